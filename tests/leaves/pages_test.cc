@@ -3,7 +3,11 @@
 
 #include "vdb_madf/base/detail/pages.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <fstream>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -50,3 +54,25 @@ TEST_CASE("pages: what is given back takes nothing with it that is in use", "[pa
     }
   }
 }
+
+// Sanitizers keep what is freed on purpose.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_CASE("pages: freed memory between blocks in use goes back", "[pages]") {
+  const auto residentBytes = [] {
+    int64_t all = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> all >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+  };
+  constexpr int64_t kBlock = 2000, kCount = 16000;
+  std::vector<std::unique_ptr<char[]>> blocks;
+  for (int64_t i = 0; i < kCount; ++i) {
+    blocks.emplace_back(new char[kBlock]);
+    std::fill_n(blocks.back().get(), kBlock, char(1));
+  }
+  const int64_t before = residentBytes();
+  for (size_t i = 0; i < blocks.size(); ++i)
+    if (i % 32 != 0) blocks[i].reset();
+  detail::returnFreedMemory();
+  REQUIRE(residentBytes() < before - kBlock * kCount * 3 / 4);
+}
+#endif

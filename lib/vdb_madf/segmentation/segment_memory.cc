@@ -46,6 +46,8 @@ constexpr double kCrumbTables = 2600, kFilteredCrumbs = 0.5;
 
 // Threads' scratch space and stacks, the graph, code.
 constexpr double kBase = 60 << 20;
+// Blocks are rounded up to huge pages, and the allocator keeps some of what was freed.
+constexpr double kKept = 0.15;
 
 /// The voxels at the faces of a leaf.
 constexpr uint64_t kRows = detail::kFirstY | detail::kLastY | detail::kFirstZ | detail::kLastZ;
@@ -122,7 +124,7 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);
   if (options.keepBalls) peak = std::max(peak, kept + 3 * perGrid);  // written as two grids
-  return int64_t(peak);
+  return int64_t(peak + kKept * (peak - kBase));
 }
 
 }  // namespace vdb_madf

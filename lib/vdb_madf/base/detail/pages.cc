@@ -10,6 +10,16 @@
 #include <cstdlib>
 #include <new>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#if defined(__GNUC__) && defined(__ELF__)
+// Of programs that are linked to mimalloc. (The library does not know which allocator it gets.)
+extern "C" void mi_collect(bool force) noexcept __attribute__((weak));
+#define VDB_MADF_MAY_HAVE_MIMALLOC
+#endif
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -31,6 +41,15 @@ void* allocatePages(size_t bytes) {
 
 void freePages(void* block) noexcept {
   std::free(block);
+}
+
+void returnFreedMemory() noexcept {
+#ifdef VDB_MADF_MAY_HAVE_MIMALLOC
+  if (mi_collect) mi_collect(true);
+#endif
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 PageReturn::PageReturn(void* block, size_t bytes)

@@ -17,6 +17,11 @@ namespace vdb_madf::detail {
 void* allocatePages(size_t bytes);
 void freePages(void* block) noexcept;
 
+/// Memory that was freed, and that the allocator (mimalloc's, or that of glibc) keeps for its next
+/// blocks, goes back to the system as far as it can. For steps of a long work that is held to a
+/// limit: what one step leaves so is counted beside what the next one takes.
+void returnFreedMemory() noexcept;
+
 /// Lets a vector take its numbers from allocatePages(), and not clear them when it grows.
 template <typename T>
 struct PageAllocator {

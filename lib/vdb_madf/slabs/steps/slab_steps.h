@@ -6,6 +6,7 @@
 #include <chrono>
 #include <vector>
 
+#include "vdb_madf/base/detail/pages.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/slabs/steps/slab_plan.h"
 
@@ -28,6 +29,7 @@ class SlabSteps {
     for (size_t s = plan_.firstOwn(); s < plan_.endOwn(); ++s) {
       run(step, s, f);
       forget(s);
+      returnFreedMemory();  // before the next slab takes as much
     }
     exchange();
   }
