@@ -100,3 +100,20 @@ def test_manifest(labels, tmp_path):
         layers = get_reader(given)(given)
         assert [kind for _, _, kind in layers] == ["labels", "vectors"] * count
         assert layers[0][1]["name"] == "sample"
+
+
+def test_plugin_engine(labels, tmp_path):
+    """The engine that napari reads by takes the manifest, and finds the layers by the ending."""
+    npe2 = pytest.importorskip("npe2", reason="the plug-in engine of napari: python3-npe2 is missing")
+    manifest = npe2.PluginManifest.from_file(PACKAGE / "napari.yaml")
+    manifest.validate_imports()
+    manager = npe2.PluginManager.instance()
+    if manifest.name not in {known.name for known in manager.iter_manifests()}:
+        manager.register(manifest)
+    path = str(tmp_path / "sample.vdb")
+    labels.save(path)
+    read = npe2.read([path], stack=False)
+    assert [kind for _, _, kind in read] == ["labels", "vectors"]
+    assert np.array_equal(read[0][0], madf.to_napari(labels)[0][0])
+    with pytest.raises(ValueError, match="[Nn]o (compatible )?readers"):
+        npe2.read([str(tmp_path / "sample.png")], stack=False)
