@@ -147,6 +147,12 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
           {"other29.tif: has 29x29x29 voxels", "of a scan of 30x30x30 voxels: give the one that"});
   CHECK(bench.run(measure + "--intensity other31.tif")
             .err.find("other31.tif: is larger than the volume of the labels") != std::string::npos);
+  bench.mustRun("convert balls.vdb coarse.tif --grid truth --type uint8 --voxel-size 20um");
+  CHECK(bench.run(measure + "--intensity coarse.tif").err.find("voxels of") == std::string::npos);
+  bench.mustRun("convert balls.vdb fine.vdb --grid truth --voxel-size 8.5um");
+  CHECK(bench.run("measure fine.vdb out --grid truth --intensity coarse.tif")
+            .err.find("coarse.tif: has voxels of 20 um, and the labels of 8.5 um") !=
+        std::string::npos);
   std::filesystem::remove_all(bench.path("out"));
   refuses(bench, kFailed, measure + "--intensity cut.npy", {"cut.npy"});
   refuses(bench, kFailed, measure + "--intensity nothing.tif", {"nothing.tif"});

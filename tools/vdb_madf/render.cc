@@ -92,7 +92,7 @@ std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box
                                   const Common& common) {
   if (o.scan.empty()) return {};
   GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
-  noteOfScan(o.scan, noteOnSize(scan.box(), about), common.progress);
+  noteOfScan(o.scan, noteOnScan(scan, about), common.progress);
   const std::vector<SlicePlane> planes = given.empty() ? middlePlanes(box) : given;
   for (const SlicePlane& plane : planes)
     if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])

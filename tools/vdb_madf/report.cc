@@ -101,7 +101,7 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   std::optional<GrayScan> scan;
   if (!o.scan.path.empty()) {
     scan = openScan(o.scan, o.input, common.progress);
-    noteOfScan(o.scan.path, noteOnSize(scan->box(), aboutOf(labels)), common.progress);
+    noteOfScan(o.scan.path, noteOnScan(*scan, aboutOf(labels)), common.progress);
     placeScan(*scan, boxOf(aboutOf(labels)));
     options.scan = &*scan;
   }

@@ -27,7 +27,7 @@ MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions
 /// @throw InvalidInput, IoError: one line that names the file and what to do.
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
 
-/// Tells what noteOn() or noteOnSize() says of a scan, if anything.
+/// Tells what noteOn() or noteOnScan() says of a scan, if anything.
 void noteOfScan(const std::string& path, const std::string& note, Progress* progress);
 
 }  // namespace vdb_madf::tools

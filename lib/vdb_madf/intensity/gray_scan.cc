@@ -3,9 +3,13 @@
 
 #include "vdb_madf/intensity/gray_scan.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -71,6 +75,20 @@ GrayScan scanOfGrid(const std::string& path, const VolumeOptions& options,
   return {std::make_unique<GridReader>(path, grid, box), box.min()};
 }
 
+bool haveOtherEdges(const VoxelSize& a, const VoxelSize& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double p = a.edges()[axis], q = b.edges()[axis];
+    if (std::max(p, q) > std::min(p, q) * kMaxEdgeRatio) return true;
+  }
+  return false;
+}
+
+/// "8.5 um", or "8.5 x 8.5 x 17 um".
+std::string edgesText(const VoxelSize& size) {
+  const auto um = lengthsIn(1e6, size.edges());
+  return (size.isCube() ? um[0] : um[0] + " x " + um[1] + " x " + um[2]) + " um";
+}
+
 }  // namespace
 
 CoordBBox GrayScan::box() const {
@@ -95,12 +113,23 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample) {
   placeScan(scan, sample.box);
 }
 
-std::string noteOnSize(const CoordBBox& scan, const openvdb::GridBase& about) {
+std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,
+                       const openvdb::GridBase& about) {
+  std::string note;
   const auto domain = storedDomain(about);
-  if (!domain || !domain->isBox() || domain->box() == scan || !scan.isInside(domain->box()) ||
-      domain->box().min() != scan.min())
-    return "";
-  return "is larger than the volume of the labels: taken for the scan that they were cropped from";
+  if (domain && domain->isBox() && domain->box() != box && box.isInside(domain->box()) &&
+      domain->box().min() == box.min())
+    note =
+        "is larger than the volume of the labels: taken for the scan that they were cropped from";
+  const auto own = storedVoxelSize(about);
+  if (voxels && own && haveOtherEdges(*voxels, *own))
+    note += fmt::format("{}has voxels of {}, and the labels of {}: their indices are compared",
+                        note.empty() ? "" : "; ", edgesText(*voxels), edgesText(*own));
+  return note;
+}
+
+std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about) {
+  return noteOnScan(scan.box(), scan.image->info().voxelSize, about);
 }
 
 GrayScan openGrayScan(const std::string& path, const VolumeOptions& options,

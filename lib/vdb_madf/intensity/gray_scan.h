@@ -4,9 +4,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/measure/measure_sample.h"
@@ -29,10 +31,15 @@ void placeScan(GrayScan& scan, const CoordBBox& domain);
 /// Likewise; @throw also if the domain of the labels is unknown
 void placeScan(GrayScan& scan, const SampleMeasures& sample);
 
-/// A sentence on a scan with this box that goes on beyond labels which begin where it does: nothing
-/// but their size tells whether they were cropped or are of another scan. Of others it is empty.
-/// @param about a grid with the domain of the labels
-std::string noteOnSize(const CoordBBox& scan, const openvdb::GridBase& about);
+/// What a user should know of a scan beside labels, as one sentence, or nothing. That it goes on
+/// beyond labels which begin where it does: nothing but their size tells whether they were cropped
+/// or are of another scan. That both say how large their voxels are, and these differ by more than
+/// 0.1 % (kMaxEdgeRatio).
+/// @param box, voxels of the scan
+/// @param about a grid with the domain and the voxel size of the labels
+std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,
+                       const openvdb::GridBase& about);
+std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about);
 
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
 /// that the options name, or GridUse::object), with its background outside of its voxels; its box
