@@ -18,6 +18,7 @@ struct GivenColumn {
   std::map<int32_t, double> values;  ///< by grain; of others nothing is known
 };
 
+/// What a table gives.
 struct GivenTable {
   std::vector<GivenColumn> columns;
   std::vector<std::string> leftOut;  ///< names as they stand in the table
