@@ -60,7 +60,7 @@ def check_series(page, folder):
     demand(page.run(curves) == [1] * 4, "the grain that is gone has lost its curves")
     demand(page.run(colors, stays) == first, "a grain has another color in the next scan")
     with open("given.csv", "w", encoding="utf-8") as file:
-        file.write(f"grain,heat\n{stays},7.5\n")
+        file.write(f"grain,heat,constructor\n{stays},7.5,2\n")
     command("report", "all.vdb", "given.html", "--with", "given.csv", "-q")
     demand(not page.button("Later").is_enabled() and page.button("Earlier").is_enabled(),
            "there is no way back")
@@ -69,3 +69,6 @@ def check_series(page, folder):
         "const {sample, selection} = window.report, row = sample.rowOf.get(Number(arguments[0]));"
         "return selection.colorBy === 'heat' && sample.grains.column('heat')[row]", stays)
     demand(given == 7.5, "a given column is not in the page")
+    page.open(os.path.join(folder, "given.html"), "color=constructor")
+    title = page.run("return window.report.sample.titleWithUnit('grains', 'constructor')")
+    demand(title == "constructor", f"a column is called {title!r}")

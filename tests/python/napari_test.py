@@ -104,7 +104,7 @@ def test_manifest(labels, tmp_path):
 
 def test_plugin_engine(labels, tmp_path):
     """The engine that napari reads by takes the manifest, and finds the layers by the ending."""
-    npe2 = pytest.importorskip("npe2", reason="the plug-in engine of napari: python3-npe2 is missing")
+    npe2 = pytest.importorskip("npe2", reason="napari's plug-in engine: python3-npe2 is missing")
     manifest = npe2.PluginManifest.from_file(PACKAGE / "napari.yaml")
     manifest.validate_imports()
     manager = npe2.PluginManager.instance()

@@ -17,7 +17,7 @@ export function ramp(share) {
 }
 
 /// A grain that is the same this much farther is as sure as any.
-const ranges = { stability: [0, 1] };
+const ranges = { __proto__: null, stability: [0, 1] };
 
 /// What the ramp spans: the values without the outermost 1 % at either end.
 export function rangeOf(table, name) {

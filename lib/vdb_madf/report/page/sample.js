@@ -8,6 +8,7 @@ import { colorsOfUnions } from './looks.js';
 const powers = { '-2': '1/u\u00b2', '-1': '1/u', 1: 'u', 2: 'u\u00b2', 3: 'u\u00b3' };
 
 const titles = {
+  __proto__: null,  // columns may have any name
   id: 'grain', first: 'grain 1', second: 'grain 2', faces: 'voxel faces',
   at_domain_face: 'cut by a face', equivalent_diameter: 'diameter', coordination: 'bonds',
   radius_ratio: 'bond radius / grain radius', aspect_2_to_1: 'axis 2 / axis 1',
@@ -18,6 +19,7 @@ const titles = {
 
 /// What columns mean whose titles do not say it.
 const hints = {
+  __proto__: null,  // columns may have any name
   cos_alpha: 'cos alpha: by the law of cosines, of the radii at the deepest places of two grains and the distance of these; above 1 where the balls there do not meet.',
   vanishes: 'vanishes: the strictness from which on, downwards, the two grains of a bond are one. A bond is doubtful where that is near the strictness shown; none: they stay two as far as the slider goes.',
   born: 'born: above this strictness the grain is in parts; none: nowhere on the slider.',
