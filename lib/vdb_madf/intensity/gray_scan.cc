@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -17,6 +16,7 @@
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/dense_volume.h"
+#include "vdb_madf/volumes/detail/volume_notes.h"
 
 namespace vdb_madf {
 
@@ -83,12 +83,6 @@ bool haveOtherEdges(const VoxelSize& a, const VoxelSize& b) {
   return false;
 }
 
-/// "8.5 um", or "8.5 x 8.5 x 17 um".
-std::string edgesText(const VoxelSize& size) {
-  const auto um = lengthsIn(1e6, size.edges());
-  return (size.isCube() ? um[0] : um[0] + " x " + um[1] + " x " + um[2]) + " um";
-}
-
 }  // namespace
 
 CoordBBox GrayScan::box() const {
@@ -123,8 +117,9 @@ std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& vox
         "is larger than the volume of the labels: taken for the scan that they were cropped from";
   const auto own = storedVoxelSize(about);
   if (voxels && own && haveOtherEdges(*voxels, *own))
-    note += fmt::format("{}has voxels of {}, and the labels of {}: their indices are compared",
-                        note.empty() ? "" : "; ", edgesText(*voxels), edgesText(*own));
+    note +=
+        fmt::format("{}has voxels of {}, and the labels of {}: their indices are compared",
+                    note.empty() ? "" : "; ", detail::voxelText(*voxels), detail::voxelText(*own));
   return note;
 }
 

@@ -15,20 +15,6 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// "8.5 um", "0.5 x 0.5 x 1.2 um"
-std::string text(const VoxelSize& size) {
-  const double longest = *std::max_element(size.edges().begin(), size.edges().end());
-  const auto [unit, perMeter] = longest < 1e-6   ? std::pair("nm", 1e9)
-                                : longest < 1e-3 ? std::pair("um", 1e6)
-                                                 : std::pair("mm", 1e3);
-  std::string text;
-  for (size_t axis = 0; axis < (size.isCube() ? 1 : 3); ++axis) {
-    if (axis > 0) text += " x ";
-    text += generalDecimal(size.edges()[axis] * perMeter, 4);
-  }
-  return text + " " + unit;
-}
-
 /// "2.5 times as long"; empty if they differ by no more than 1 %.
 std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
   constexpr double kTolerance = 1.01;
@@ -46,6 +32,19 @@ std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
 
 }  // namespace
 
+std::string voxelText(const VoxelSize& size) {
+  const double longest = *std::max_element(size.edges().begin(), size.edges().end());
+  const auto [unit, perMeter] = longest < 1e-6   ? std::pair("nm", 1e9)
+                                : longest < 1e-3 ? std::pair("um", 1e6)
+                                                 : std::pair("mm", 1e3);
+  std::string text;
+  for (size_t axis = 0; axis < (size.isCube() ? 1 : 3); ++axis) {
+    if (axis > 0) text += " x ";
+    text += generalDecimal(size.edges()[axis] * perMeter, 4);
+  }
+  return text + " " + unit;
+}
+
 void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
                    const VolumeOptions& options) {
   if (!options.note || !options.voxelSize || !ofFile) return;
@@ -53,7 +52,7 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
   if (times.empty()) return;
   options.note(
       fmt::format("{}: the file says that a voxel is {} long; {}, {}, was given and is taken", path,
-                  text(*ofFile), text(*options.voxelSize), times),
+                  voxelText(*ofFile), voxelText(*options.voxelSize), times),
       NoteAbout::voxelSize);
 }
 

@@ -11,6 +11,9 @@
 
 namespace vdb_madf::detail {
 
+/// "8.5 um", "0.5 x 0.5 x 1.2 um", to four digits.
+std::string voxelText(const VoxelSize& size);
+
 /// Notes that the options have another voxel size than the file: mostly a slip of the unit, or
 /// another sample's size.
 void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
