@@ -39,7 +39,10 @@ std::string powerOf(const TableUnit& unit, int exponent) {
 }
 
 bool isFlag(const std::string& name) {
-  return name == "at_domain_face" || name == "bonded" || name == "cell_at_domain_face";
+  for (const char* flag : {"at_domain_face", "bonded", "cell_at_domain_face", "neck_confirmed",
+                           "cut_x", "cut_y", "cut_z"})
+    if (name == flag) return true;
+  return false;
 }
 bool isLabel(const std::string& name) {
   return name == "id" || name == "first" || name == "second";

@@ -62,7 +62,7 @@ class Measurements:
     - with intensity: the `gray_` columns, of the voxels on both sides
     - with sensitivity: `p_bond`, share of the runs in which both grains are there and touch, and
       `area_sd` over these
-    - with crossing: `cut_*`, 1 if the bond is in the minimum cut along this axis; `current_*`: of
+    - with crossing: `cut_*`: it is in the minimum cut along this axis; `current_*`: of
       all that flows between the faces, through this bond
     - with stability: `vanishes`, the largest strictness at which the two grains are one
 
