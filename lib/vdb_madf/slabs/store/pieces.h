@@ -74,7 +74,7 @@ enum class Step {
   joins,
   loose,
   labels,
-  never  ///< what lives so long goes with the scratch
+  never  ///< goes with the scratch, or is removed by hand
 };
 
 /// Who sends a message to a slab.
@@ -138,7 +138,7 @@ inline constexpr Piece<char> kPut("put", Step::never);
 inline constexpr Piece<Leaves> kObject("object", Step::never);
 inline constexpr Piece<Leaves> kCavities("cavities", Step::never);
 inline constexpr Message<Leaves> kHoles("holes", From::toRoot, Step::never);
-inline constexpr Piece<Leaves> kAround("around", Step::never);  // with a slab of another member
+inline constexpr Piece<Leaves> kAround("around", Step::never);  // of others; removed after flow
 
 // How far the background of columns is: below a slab's upper cut, above its lower one; beyond its
 // cuts.
