@@ -10,6 +10,7 @@
 
 #include "support/random_volume.h"
 #include "vdb_madf/slabs/cuts/merge_parts.h"
+#include "vdb_madf/slabs/store/bytes.h"
 
 // Parts of a graph, merged in ranges that are joined in any order of neighbors.
 
@@ -68,9 +69,9 @@ class RandomMergeTree {
     const detail::OpenGraph open = upper->merging.handOver();
     grains_.handedOver += open.group.classes.size();
     ++grains_.joins;
-    open.writeTo(bytes);
-    const std::vector<uint32_t> classes =
-        lower->merging.add(detail::OpenGraph::readFrom(detail::ByteReader(bytes.bytes())));
+    detail::Stored<detail::OpenGraph>::write(bytes, open);
+    const std::vector<uint32_t> classes = lower->merging.add(
+        detail::Stored<detail::OpenGraph>::read(detail::ByteReader(bytes.bytes())));
     lower->joined.emplace_back(std::move(upper), classes);
     return lower;
   }

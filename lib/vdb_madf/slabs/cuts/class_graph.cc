@@ -10,18 +10,6 @@
 
 namespace vdb_madf::detail {
 
-void ClassGraph::writeTo(ByteWriter& bytes) const {
-  bytes.add(sizes);
-  bytes.add(contacts);
-}
-
-ClassGraph ClassGraph::readFrom(ByteReader bytes) {
-  ClassGraph graph;
-  graph.sizes = bytes.vector<Size>();
-  graph.contacts = bytes.vector<ManifoldGraph::Edge>();
-  return graph;
-}
-
 ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOfNode) {
   ClassGraph graph;
   std::vector<ClassGraph::Size>& sizes = graph.sizes;

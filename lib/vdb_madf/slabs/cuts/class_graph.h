@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/slabs/cuts/slab_part.h"
-#include "vdb_madf/slabs/store/bytes.h"
 
 namespace vdb_madf::detail {
 
@@ -23,8 +23,10 @@ struct ClassGraph {
   std::vector<Size> sizes;                    ///< ascending, each class once
   std::vector<ManifoldGraph::Edge> contacts;  ///< ascending, each pair once
 
-  void writeTo(ByteWriter& bytes) const;
-  static ClassGraph readFrom(ByteReader bytes);
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.sizes, self.contacts);
+  }
 };
 
 /// @param classOfNode of each node of the part

@@ -17,22 +17,6 @@ void OpenGraph::About::add(const About& other) {
   hasVoxels = hasVoxels || other.hasVoxels;
 }
 
-void OpenGraph::writeTo(ByteWriter& bytes) const {
-  bytes.add(group.classes);
-  bytes.add(group.edges);
-  bytes.add(about);
-  bytes.add(nodes);
-}
-
-OpenGraph OpenGraph::readFrom(ByteReader bytes) {
-  OpenGraph graph;
-  graph.group.classes = bytes.vector<MergeGroup::Class>();
-  graph.group.edges = bytes.vector<MergeGroup::Edge>();
-  graph.about = bytes.vector<About>();
-  graph.nodes = bytes.vector<Node>();
-  return graph;
-}
-
 std::vector<uint32_t> MergeParts::add(const SlabPart& part) {
   return add(openGraph(part));
 }

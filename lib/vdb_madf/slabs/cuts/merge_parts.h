@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
@@ -31,8 +32,10 @@ struct OpenGraph {
   std::vector<About> about;  ///< what is known of each class of the group
   std::vector<Node> nodes;   ///< ascending
 
-  void writeTo(ByteWriter& bytes) const;
-  static OpenGraph readFrom(ByteReader bytes);
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.group.classes, self.group.edges, self.about, self.nodes);
+  }
 };
 
 /// merge() for the graph in a range of slabs, which grows upward: by the part of the next slab, or

@@ -105,24 +105,4 @@ SlabPart slabPart(size_t slab, const SlabTerminals& terminals, const std::vector
   return part;
 }
 
-void SlabPart::writeTo(ByteWriter& bytes) const {
-  bytes.add(graph.nodes);
-  bytes.add(graph.edges);
-  bytes.add(number);
-  bytes.add(goesOn);
-  bytes.add(startsBelow);
-  bytes.add(nodeOf);
-}
-
-SlabPart SlabPart::readFrom(ByteReader bytes) {
-  SlabPart part;
-  part.graph.nodes = bytes.vector<CriticalPoint>();
-  part.graph.edges = bytes.vector<ManifoldGraph::Edge>();
-  part.number = bytes.vector<uint32_t>();
-  part.goesOn = bytes.vector<char>();
-  part.startsBelow = bytes.vector<char>();
-  part.nodeOf = bytes.vector<uint32_t>();
-  return part;
-}
-
 }  // namespace vdb_madf::detail

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/segmentation/graph_part.h"
 #include "vdb_madf/slabs/cuts/slab_terminals.h"
-#include "vdb_madf/slabs/store/bytes.h"
 
 namespace vdb_madf::detail {
 
@@ -38,8 +38,11 @@ struct SlabPart : GraphPart {
   std::vector<char> startsBelow;  ///< of each node: is it in the part of a lower slab, too?
   std::vector<uint32_t> nodeOf;   ///< of each terminal of the slab
 
-  void writeTo(ByteWriter& bytes) const;
-  static SlabPart readFrom(ByteReader bytes);
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.graph.nodes, self.graph.edges, self.number, self.goesOn, self.startsBelow,
+                    self.nodeOf);
+  }
 };
 
 /// @param contacts from `below`, by place, to terminals of the slab

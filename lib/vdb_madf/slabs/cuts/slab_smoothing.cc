@@ -32,18 +32,6 @@ void addLeaves(const LeafLabels& rim, std::vector<BeyondLeaf>& sources) {
 
 }  // namespace
 
-void LeafLabels::writeTo(ByteWriter& bytes) const {
-  bytes.add(leaves);
-  bytes.add(labels);
-}
-
-LeafLabels LeafLabels::readFrom(ByteReader bytes) {
-  LeafLabels rim;
-  rim.leaves = bytes.vector<LeafIndex::LeafVoxels>();
-  rim.labels = bytes.vector<uint32_t>();
-  return rim;
-}
-
 LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& labels, int begin,
                          int end) {
   LeafLabels result;

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
-#include "vdb_madf/slabs/store/bytes.h"
 
 // The first part of tidy() in a slab: smoothing, which looks one voxel further each round.
 
@@ -19,8 +19,10 @@ struct LeafLabels {
   std::vector<LeafIndex::LeafVoxels> leaves;  ///< ascending by origin
   std::vector<uint32_t> labels;               ///< voxel after voxel
 
-  void writeTo(ByteWriter& bytes) const;
-  static LeafLabels readFrom(ByteReader bytes);
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.leaves, self.labels);
+  }
 };
 
 /// The labels of the leaves with begin <= z < end.

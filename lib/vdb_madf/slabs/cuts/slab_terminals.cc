@@ -61,18 +61,4 @@ SlabTerminals slabTerminals(const LeafIndex& index, const Flow& flow,
   return result;
 }
 
-void SlabTerminals::writeTo(ByteWriter& bytes) const {
-  bytes.add(points);
-  bytes.add(edges);
-  bytes.add(balls);
-}
-
-SlabTerminals SlabTerminals::readFrom(ByteReader bytes) {
-  SlabTerminals result;
-  result.points = bytes.vector<CriticalPoint>();
-  result.edges = bytes.vector<Edge>();
-  result.balls = bytes.value<int64_t>();
-  return result;
-}
-
 }  // namespace vdb_madf::detail

@@ -4,13 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/method/critical_point.h"
 #include "vdb_madf/method/flow.h"
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/power_map.h"
-#include "vdb_madf/slabs/store/bytes.h"
 
 namespace vdb_madf::detail {
 
@@ -38,8 +38,10 @@ struct SlabTerminals {
   static std::vector<ManifoldGraph::Edge> contacts(const std::vector<FaceVoxel>& below,
                                                    const std::vector<FaceVoxel>& above);
 
-  void writeTo(ByteWriter& bytes) const;
-  static SlabTerminals readFrom(ByteReader bytes);
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.points, self.edges, self.balls);
+  }
 };
 
 /// @param cavities voxels that are none of the object, ascending

@@ -43,19 +43,9 @@ struct CompletionState {
       above;             ///< the voxels beyond the cuts, as far as the slab has to know; round 0
   int32_t isActive = 0;  ///< may any voxel change?
 
-  void writeTo(ByteWriter& bytes) const {
-    bytes.add(uncovered);
-    bytes.add(below);
-    bytes.add(above);
-    bytes.add(isActive);
-  }
-  static CompletionState readFrom(ByteReader bytes) {
-    CompletionState state;
-    state.uncovered = bytes.vector<Voxel>();
-    state.below = bytes.vector<FaceChange>();
-    state.above = bytes.vector<FaceChange>();
-    state.isActive = bytes.value<int32_t>();
-    return state;
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.uncovered, self.below, self.above, self.isActive);
   }
 };
 
@@ -74,17 +64,9 @@ struct PlayedWindow {
   int32_t window = 0;
   Inbox inbox;
 
-  void writeTo(ByteWriter& bytes) const {
-    bytes.add(window);
-    bytes.add(inbox.below);
-    bytes.add(inbox.above);
-  }
-  static PlayedWindow readFrom(ByteReader bytes) {
-    PlayedWindow played;
-    played.window = bytes.value<int32_t>();
-    played.inbox.below = bytes.vector<FaceChange>();
-    played.inbox.above = bytes.vector<FaceChange>();
-    return played;
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.window, self.inbox.below, self.inbox.above);
   }
 };
 

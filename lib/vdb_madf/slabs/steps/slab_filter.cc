@@ -125,11 +125,7 @@ class SlabFilter {
 
   /// All cells of a slab's balls; which of its components have a ball that is large enough.
   void gatherCells(size_t s) {
-    std::vector<SizedBall> balls;
-    for (size_t t = 0; t < work_.plan.slabCount(); ++t) {
-      const auto more = work_.store.receive(kCells, t, s);
-      balls.insert(balls.end(), more.begin(), more.end());
-    }
+    std::vector<SizedBall> balls = work_.store.receiveAll(kCells, s);
     joinBalls(balls);
     const SlabBody slab = work_.body(s);
     const ConnectedComponents components(slab.index, work_.interrupter);
@@ -221,12 +217,8 @@ class SlabFilter {
   void mapKeptInRegion(size_t s) {
     WorkPart part = work_.steps.part(Step::keptMap, s);
     SlabBody slab = work_.body(s);
-    std::vector<ForeignSite> sites;
-    for (size_t t = 0; t < work_.plan.slabCount(); ++t) {
-      const auto kept = work_.store.receive(kKeptInReach, t, s);
-      sites.insert(sites.end(), kept.begin(), kept.end());
-    }
-    PowerMap map = filteredInRegion(work_, s, sites, slab.index, &part);
+    PowerMap map =
+        filteredInRegion(work_, s, work_.store.receiveAll(kKeptInReach, s), slab.index, &part);
     completion_.begin(s, slab.index, map, &part);
   }
 

@@ -18,17 +18,9 @@ struct TerminalExits {
   int64_t balls = 0;
   std::vector<SlabExits::Exit> exits;
 
-  void writeTo(ByteWriter& bytes) const {
-    bytes.add(terminals);
-    bytes.add(balls);
-    bytes.add(exits);
-  }
-  static TerminalExits readFrom(ByteReader bytes) {
-    TerminalExits of;
-    of.terminals = bytes.value<uint64_t>();
-    of.balls = bytes.value<int64_t>();
-    of.exits = bytes.vector<SlabExits::Exit>();
-    return of;
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.terminals, self.balls, self.exits);
   }
 };
 

@@ -19,13 +19,9 @@ namespace vdb_madf::detail {
 struct HeldPieces {
   std::vector<char> below, own, above;
 
-  void writeTo(ByteWriter& bytes) const {
-    for (const auto* of : {&below, &own, &above}) bytes.add(*of);
-  }
-  static HeldPieces readFrom(ByteReader bytes) {
-    HeldPieces held;
-    for (auto* of : {&held.below, &held.own, &held.above}) *of = bytes.vector<char>();
-    return held;
+  template <typename Self>
+  static auto storedFields(Self& self) {
+    return std::tie(self.below, self.own, self.above);
   }
 };
 
@@ -244,11 +240,7 @@ class SlabLabels {
 
   /// At the root: the voxels that no path of their label joins with its anchor get other labels.
   void refillLoose() {
-    std::vector<LooseVoxel> loose;
-    for (size_t s = 0; s < work_.plan.slabCount(); ++s) {
-      const auto found = work_.store.receive(kLoose, s, kRoot);
-      loose.insert(loose.end(), found.begin(), found.end());
-    }
+    std::vector<LooseVoxel> loose = work_.store.receiveAll(kLoose, kRoot);
     refillAll(loose, work_.interrupter);
     std::vector<std::vector<LooseVoxel>> of(work_.plan.slabCount());
     for (const LooseVoxel& voxel : loose)

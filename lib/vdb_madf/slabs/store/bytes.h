@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -60,6 +61,14 @@ class ByteReader {
     if (count > 0) std::memcpy(static_cast<void*>(values.data()), data, count * sizeof(T));
     return values;
   }
+  template <typename T>
+  void read(T& result) {
+    result = value<T>();
+  }
+  template <typename T>
+  void read(std::vector<T>& values) {
+    values = vector<T>();
+  }
 
  private:
   const char* take(uint64_t count, size_t size) {
@@ -73,8 +82,8 @@ class ByteReader {
   size_t at_ = 0;
 };
 
-/// How a value is stored: by its writeTo(ByteWriter&) and readFrom(ByteReader), or as it lies in
-/// memory.
+/// How a value is stored: field by field, of which its storedFields() makes a tuple of references;
+/// or as it lies in memory.
 template <typename T, typename = void>
 struct Stored {
   static void write(ByteWriter& bytes, const T& value) { bytes.add(value); }
@@ -86,9 +95,15 @@ struct Stored<std::vector<T>> {
   static std::vector<T> read(ByteReader bytes) { return bytes.vector<T>(); }
 };
 template <typename T>
-struct Stored<T, std::void_t<decltype(&T::writeTo)>> {
-  static void write(ByteWriter& bytes, const T& value) { value.writeTo(bytes); }
-  static T read(ByteReader bytes) { return T::readFrom(std::move(bytes)); }
+struct Stored<T, std::void_t<decltype(T::storedFields(std::declval<T&>()))>> {
+  static void write(ByteWriter& bytes, const T& value) {
+    std::apply([&](const auto&... field) { (bytes.add(field), ...); }, T::storedFields(value));
+  }
+  static T read(ByteReader bytes) {
+    T value;
+    std::apply([&](auto&... field) { (bytes.read(field), ...); }, T::storedFields(value));
+    return value;
+  }
 };
 
 }  // namespace vdb_madf::detail

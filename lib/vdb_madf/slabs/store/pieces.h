@@ -93,7 +93,7 @@ struct StoredName {
 };
 
 /// What a slab leaves for its later steps. T: a trivial type, a vector or VoxelArray of one, or a
-/// type with writeTo() and readFrom().
+/// type with storedFields() (bytes.h).
 template <typename T>
 struct Piece : StoredName {
   constexpr Piece(const char* pieceName, Step lastStep) : StoredName{pieceName, lastStep} {}

@@ -70,6 +70,16 @@ class SlabStore {
     const std::string name = nameOf(message, from, to);
     return scratch_->has(name) ? valueOf<T>(scratch_->read(name)) : T();
   }
+  /// The values of all slabs, from the lowest on.
+  template <typename T>
+  Values<T> receiveAll(const Message<Values<T>>& message, size_t to) const {
+    Values<T> all;
+    for (size_t from = 0; from < slabCount_; ++from) {
+      const Values<T> more = receive(message, from, to);
+      all.insert(all.end(), more.begin(), more.end());
+    }
+    return all;
+  }
   void removeMessage(const StoredName& message, size_t from, size_t to) {
     scratch_->remove(nameOf(message, from, to));
   }
