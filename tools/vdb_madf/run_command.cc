@@ -4,7 +4,11 @@
 #include "run_command.h"
 
 #include <fmt/core.h>
+#include <openvdb/version.h>
 #include <tbb/global_control.h>
+#ifdef VDB_MADF_MIMALLOC
+#include <mimalloc.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
@@ -17,14 +21,16 @@
 
 #include "command.h"
 #include "command_line.h"
-#include "large_pages.h"
 #include "member_failure.h"
 #include "message.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/simd_level.h"
+#include "vdb_madf/base/version.h"
 #include "vdb_madf/files/verified_files.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/report/report.h"
 #include "vdb_madf/segmentation/initialize.h"
-#include "version_text.h"
 
 namespace vdb_madf::tools {
 
@@ -99,6 +105,32 @@ void flushStandardOutput() {
   std::fflush(stdout);
   std::cout.flush();
   if (!std::cout || std::ferror(stdout)) throw IoError("standard output cannot be written");
+}
+
+/// Lets this process's memory come in large pages (2 MiB), where the system gives them to those who
+/// ask. A large sample has a million blocks of 2 KiB, the values of leaf nodes: a half of a small
+/// page each. Where a page's first touch is slow, as in virtual machines that are given memory on
+/// demand, these touches would take as long as the method. Nothing where the program was built
+/// without mimalloc 2, whose allocator it is then.
+void askForLargePages() {
+#ifdef VDB_MADF_MIMALLOC
+  mi_option_enable(mi_option_large_os_pages);
+  // Otherwise a thread's first memory comes in small pages.
+  mi_option_set(mi_option_eager_commit_delay, 0);
+#endif
+}
+
+/// The version of the command, and in lines below it what it was built with and runs with:
+/// OpenVDB's version, the instruction set, optional formats.
+std::string versionText() {
+  return std::string(kVersion) + "\nOpenVDB " + openvdb::getLibraryVersionString() +
+         "\nSIMD level " + simdLevel() +
+         (readsHdf5() ? "\nHDF5 is read and written"
+                      : "\nHDF5 is not read or written: install libhdf5-dev, then configure and "
+                        "build again") +
+         (canWriteReport() ? "\nReports are written"
+                           : "\nReports are not written: install esbuild, libjs-three and "
+                             "libjs-jquery-datatables, then configure and build again");
 }
 
 void addVerbs(Verb command, const CommandLine& line, Common& common, Action& action) {
