@@ -4,12 +4,12 @@
 #include "command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "nearest_name.h"
 #include "vdb_madf/files/file_name.h"
 
 namespace vdb_madf::tools {
@@ -26,6 +26,44 @@ std::string givenBelow(const CLI::App& app) {
 const CLI::App& lastVerb(const CLI::App& app) {
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   return verbs.empty() ? app : lastVerb(*verbs.front());
+}
+
+/// Shorter beginnings could be anything.
+constexpr size_t kShortestBeginning = 3;
+
+/// Optimal string alignment: Levenshtein's distance with exchanges of neighbors.
+size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<size_t>> least(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i)
+    for (size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        least[i][j] = i + j;
+        continue;
+      }
+      least[i][j] = std::min({least[i - 1][j] + 1, least[i][j - 1] + 1,
+                              least[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        least[i][j] = std::min(least[i][j], least[i - 2][j - 2] + 1);
+    }
+  return least[a.size()][b.size()];
+}
+
+/// The name that was most likely meant: one that begins with what was given, else the one that
+/// takes the fewest single letters put in, left out, replaced or exchanged with the next, at most
+/// a third of what was given. (A tie: the first.)
+std::optional<std::string> nearestName(const std::string& given,
+                                       const std::vector<std::string>& names) {
+  std::optional<std::string> nearest;
+  size_t least = given.size() / 3 + 1;
+  for (const std::string& name : names) {
+    const bool begins =
+        given.size() >= kShortestBeginning && name.compare(0, given.size(), given) == 0;
+    const size_t steps = begins ? 0 : distance(given, name);
+    if (steps >= least) continue;
+    least = steps;
+    nearest = name;
+  }
+  return nearest;
 }
 
 std::string didYouMean(const std::string& given, const std::vector<std::string>& names) {
