@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "phi_table.h"
+#include "track_output.h"
 
 #include <sstream>
 
