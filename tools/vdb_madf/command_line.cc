@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "vdb_madf/files/file_name.h"
@@ -233,20 +234,14 @@ Option& Option::offer(const std::vector<std::string>& values) {
   return *this;
 }
 
-Option& Option::range(int low, int high) {
+template <typename Number>
+Option& Option::range(Number low, Number high) {
   option_->check(CLI::Range(low, high));
   return *this;
 }
-
-Option& Option::range(int64_t low, int64_t high) {
-  option_->check(CLI::Range(low, high));
-  return *this;
-}
-
-Option& Option::range(double low, double high) {
-  option_->check(CLI::Range(low, high));
-  return *this;
-}
+template Option& Option::range(int, int);
+template Option& Option::range(int64_t, int64_t);
+template Option& Option::range(double, double);
 
 Option& Option::notNegative() {
   option_->check(CLI::NonNegativeNumber);
@@ -267,21 +262,15 @@ Option Verb::option(const std::string& name, std::string& value, const std::stri
   return Option(takePaths(app_->add_option(name, value, help)), choices_);
 }
 
-Option Verb::option(const std::string& name, int& value, const std::string& help) {
-  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
+template <typename Number>
+Option Verb::option(const std::string& name, Number& value, const std::string& help) {
+  CLI::Option* const option = app_->add_option(name, value, help);
+  return Option(std::is_integral_v<Number> ? takeDecimals(option) : option, choices_);
 }
-
-Option Verb::option(const std::string& name, uint64_t& value, const std::string& help) {
-  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
-}
-
-Option Verb::option(const std::string& name, int64_t& value, const std::string& help) {
-  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
-}
-
-Option Verb::option(const std::string& name, double& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help), choices_);
-}
+template Option Verb::option(const std::string&, int&, const std::string&);
+template Option Verb::option(const std::string&, uint64_t&, const std::string&);
+template Option Verb::option(const std::string&, int64_t&, const std::string&);
+template Option Verb::option(const std::string&, double&, const std::string&);
 
 Option Verb::option(const std::string& name, std::vector<std::string>& values,
                     const std::string& help) {

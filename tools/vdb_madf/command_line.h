@@ -42,9 +42,9 @@ class Option {
   /// Offers these values where words are completed; others are not refused here.
   Option& offer(const std::vector<std::string>& values);
   /// Requires a value from `low` to `high`, both included. NaN passes.
-  Option& range(int low, int high);
-  Option& range(int64_t low, int64_t high);
-  Option& range(double low, double high);
+  /// Numbers are int, int64_t or double.
+  template <typename Number>
+  Option& range(Number low, Number high);
   Option& notNegative();
   Option& excludes(const Option& other);
 
@@ -63,10 +63,9 @@ class Verb {
   Verb verb(const std::string& name, const std::string& description);
   /// An option ("--size" or "-s,--size") or, without dashes, an argument by its place.
   Option option(const std::string& name, std::string& value, const std::string& help);
-  Option option(const std::string& name, int& value, const std::string& help);
-  Option option(const std::string& name, uint64_t& value, const std::string& help);
-  Option option(const std::string& name, int64_t& value, const std::string& help);
-  Option option(const std::string& name, double& value, const std::string& help);
+  /// Numbers are int, int64_t, uint64_t or double.
+  template <typename Number>
+  Option option(const std::string& name, Number& value, const std::string& help);
   /// An option of one or more values.
   Option option(const std::string& name, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
