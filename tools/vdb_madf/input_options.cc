@@ -331,6 +331,12 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
   return result;
 }
 
+void addDensity(Verb verb, std::string& density, bool& ice) {
+  verb.option("--density", density, "of the grains' material, kg/m3: adds what is per mass")
+      .typeName("D");
+  verb.flag("--ice", ice, "the density of ice: --density 917");
+}
+
 std::string objectSteps(const openvdb::GridBase& grid) {
   const auto steps = grid.getMetadata<openvdb::StringMetadata>(kObjectKey);
   return steps ? steps->value() : "";

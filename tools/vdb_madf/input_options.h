@@ -113,6 +113,9 @@ void addBoundary(Verb verb, std::string& boundary);
 /// @throw InvalidInput if it is open and the domain is unknown.
 Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
 
+/// Adds --density and --ice, for parseDensity().
+void addDensity(Verb verb, std::string& density, bool& ice);
+
 /// How an object was made of a gray image, as its metadata tell; empty if it was not.
 std::string objectSteps(const openvdb::GridBase& grid);
 /// "3 of 4 voxels of the box": how large a domain is that is no box.

@@ -152,9 +152,7 @@ void addMeasure(Verb command, Common& common, Action& action) {
               "fewest voxel faces of a bond; the areas keep what smaller contacts share")
       .typeName("N")
       .showDefault();
-  verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
-      .typeName("D");
-  verb.flag("--ice", o->ice, "the density of ice: --density 917");
+  addDensity(verb, o->density, o->ice);
   verb.flag("--shape", o->measure.shape,
             "adds Feret diameters, convex volume, solidity and Zingg's class");
   verb.flag("--edge-weights", o->measure.edgeWeights,
@@ -169,24 +167,13 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--size-reference", o->sizeReference,
               "adds how far these curves are from that of a table: size_mm,percent_passing")
       .typeName("FILE.csv");
-  verb.option("--intensity", o->intensity.path,
-              "adds the gray values of grains and bonds in the scan that they were made of")
-      .typeName("FILE");
-  verb.option("--intensity-grid", o->intensity.grid,
-              "of the scan: the grid of a VDB, the array of a Zarr or HDF5 file")
-      .typeName("NAME");
-  verb.option("--gray", o->gray.path,
-              "adds the necks of bonds as this gray scan shows them, freed of its blur")
-      .typeName("FILE");
-  verb.option("--gray-grid", o->gray.grid,
-              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
-      .typeName("NAME");
-  verb.option("--phases", o->phases.path,
-              "a map of phases on the voxels of the labels: measures the binder between grains")
-      .typeName("FILE");
-  verb.option("--phases-grid", o->phases.grid,
-              "of that map: the grid of a VDB, the array of a Zarr or HDF5 file")
-      .typeName("NAME");
+  o->intensity.add(verb,
+                   "adds the gray values of grains and bonds in the scan that they were made of",
+                   "of the scan");
+  o->gray.add(verb, "adds the necks of bonds as this gray scan shows them, freed of its blur");
+  o->phases.add(verb,
+                "a map of phases on the voxels of the labels: measures the binder between grains",
+                "of that map");
   verb.option("--binder", o->binderText, "the value of binder in the map, 1 if it is not given")
       .typeName("V");
   verb.option("--bridges", o->bridges,

@@ -34,7 +34,8 @@ namespace {
 
 struct RenderArguments {
   InputOptions input;
-  std::string out, only, slice, select, scan, scanGrid, colorBy, with;
+  std::string out, only, slice, select, colorBy, with;
+  ScanOption scan{"", "", "--overlay"};
   int size = 512, frames = 1;
   bool interfaces = false, noAxes = false, transparent = false;
   ViewOptions view;
@@ -74,7 +75,8 @@ void parse(RenderArguments& o) {
   if (!std::isfinite(o.view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
   if (!std::isfinite(o.view.elevation)) throw WrongUsage("--elevation: not a finite number");
   if (o.only == "view" && !o.slice.empty()) throw WrongUsage("--slice: --only view has no slices");
-  if (o.only == "view" && !o.scan.empty()) throw WrongUsage("--overlay: --only view has no slices");
+  if (o.only == "view" && !o.scan.path.empty())
+    throw WrongUsage("--overlay: --only view has no slices");
   if (o.frames > 1 && o.only != "view") throw WrongUsage("--turn: it is of views: add --only view");
   o.planes = parseSlices(o.slice);
   if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
@@ -84,15 +86,15 @@ void parse(RenderArguments& o) {
   std::sort(o.selected.begin(), o.selected.end());
   for (int frame = 0; frame < o.frames; ++frame) o.input.outputs.push_back(frameName(o, frame));
   o.input.parse();
-  checkScan({o.scan, o.scanGrid, "--overlay"}, o.input);
+  checkScan(o.scan, o.input);
 }
 
 std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box,
                                   const std::vector<SlicePlane>& given, const Int32Grid& about,
                                   const Common& common) {
-  if (o.scan.empty()) return {};
-  GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
-  noteOfScan(o.scan, noteOnScan(scan, about), common.progress);
+  if (o.scan.path.empty()) return {};
+  GrayScan scan = openScan(o.scan, o.input, common.progress);
+  noteOfScan(o.scan.path, noteOnScan(scan, about), common.progress);
   const std::vector<SlicePlane> planes = given.empty() ? middlePlanes(box) : given;
   for (const SlicePlane& plane : planes)
     if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])
@@ -274,11 +276,7 @@ void addRender(Verb command, Common& common, Action& action) {
       .typeName("COLUMN");
   verb.option("--with", o->with, kWithHelp).typeName("FILE.csv");
   verb.flag("--interfaces", o->interfaces, "shows of grains the voxels alone that touch another");
-  verb.option("--overlay", o->scan, "the gray scan: slices show it with the outlines of grains")
-      .typeName("FILE");
-  verb.option("--overlay-grid", o->scanGrid,
-              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
-      .typeName("NAME");
+  o->scan.add(verb, "the gray scan: slices show it with the outlines of grains");
   verb.flag("--no-axes", o->noAxes, "the view without a box and names of axes");
   verb.option("--turn", o->frames, "so many views around z: OUT_000.png, OUT_001.png ...")
       .typeName("N")

@@ -169,12 +169,7 @@ void addReport(Verb command, Common& common, Action& action) {
             "the labels are scans of one sample, numbered by track: a page with a slider from scan "
             "to scan");
   verb.option("--with", o->with, kWithHelp).typeName("FILE.csv");
-  verb.option("--overlay", o->scan.path,
-              "the gray scan: slices show it with the outlines of grains")
-      .typeName("FILE");
-  verb.option("--overlay-grid", o->scan.grid,
-              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
-      .typeName("NAME");
+  o->scan.add(verb, "the gray scan: slices show it with the outlines of grains");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
       .range(16, 1024)
       .showDefault();
@@ -189,9 +184,7 @@ void addReport(Verb command, Common& common, Action& action) {
       "--crossing", o->report.measure.crossings,
       "adds the minimum cut and the currents between opposite faces of a box, in the place of "
       "the slider of strictness");
-  verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
-      .typeName("D");
-  verb.flag("--ice", o->ice, "the density of ice: --density 917");
+  addDensity(verb, o->density, o->ice);
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { runReport(*o, common); };

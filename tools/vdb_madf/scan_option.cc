@@ -9,6 +9,13 @@
 
 namespace vdb_madf::tools {
 
+void ScanOption::add(Verb verb, const std::string& help, const std::string& ofWhat) {
+  verb.option(option, path, help).typeName("FILE");
+  verb.option(option + "-grid", grid,
+              ofWhat + ": the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
+}
+
 namespace {
 
 /// What to do about a scan; the options that other hints name describe the labels.

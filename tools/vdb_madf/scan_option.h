@@ -15,6 +15,9 @@ struct ScanOption {
   std::string path;    ///< empty: none
   std::string grid;    ///< of a VDB, or the array of a Zarr or HDF5 file
   std::string option;  ///< "--name" of the path; that of the grid is "--name-grid"
+
+  /// Adds both options. @param help that of the path; the grid is one "of that scan"
+  void add(Verb verb, const std::string& help, const std::string& ofWhat = "of that scan");
 };
 
 /// What can be said of the option before the work. @throw WrongUsage
