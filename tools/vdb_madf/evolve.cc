@@ -14,8 +14,8 @@
 #include "command.h"
 #include "input_options.h"
 #include "parse.h"
+#include "sample_kinds.h"
 #include "text_file.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -48,11 +48,7 @@ void parseVector(const std::string& text, const std::string& option, openvdb::Ve
 void parse(EvolveArguments& o) {
   parseVector(o.axis, "--axis", o.evolve.axis);
   parseVector(o.drift, "--drift", o.evolve.drift);
-  try {
-    checkEvolve(o.evolve);
-  } catch (const InvalidInput& error) {
-    throw WrongUsage(std::string("cannot generate this: ") + error.what());
-  }
+  madeOfOptions([&] { checkEvolve(o.evolve); });
   o.input.outputs = {o.file("motion.csv"), o.file("fates.csv"), o.file("bonds.csv")};
   for (int step = 0; step <= o.evolve.steps; ++step) o.input.outputs.push_back(o.stepFile(step));
   o.input.parse();

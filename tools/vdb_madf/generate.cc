@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include "command.h"
 #include "grid_image.h"
@@ -15,7 +14,6 @@
 #include "outputs.h"
 #include "parse.h"
 #include "sample_kinds.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_name.h"
@@ -100,17 +98,15 @@ void writeGray(const GenerateArguments& options, const Sample& sample, Interrupt
   writer->finish();
 }
 
-/// The list is read before, so whatever cannot be made is the fault of the options.
+/// The list of centers is read before.
 Sample makeSample(const SampleKind& kind, const GenerateArguments& options,
                   Interrupter* interrupter) {
-  try {
+  return madeOfOptions([&] {
     checkScan(options.scan);
     const Sample sample = kind.make(options, interrupter);
     if (!options.gray.empty()) return sample;
     return scanned(sample, options.scan, interrupter);
-  } catch (const InvalidInput& error) {
-    throw WrongUsage(std::string("cannot generate this: ") + error.what());
-  }
+  });
 }
 
 void checkVoxels(const SampleKind& kind, const GenerateArguments& options) {
@@ -173,21 +169,16 @@ void printVoxels(const GenerateArguments& options, double voxels, double ofAll) 
 
 void runInSlabs(const GenerateArguments& options, const Common& common) {
   common.progress->start("generate");
-  std::optional<PackSlabs> slabs;
-  try {
-    slabs.emplace(options.pack, common.progress);
-  } catch (const InvalidInput& error) {
-    throw WrongUsage(std::string("cannot generate this: ") + error.what());
-  }
+  const PackSlabs slabs = madeOfOptions([&] { return PackSlabs(options.pack, common.progress); });
   common.progress->start("write");
-  const SlabFolderWriter folder(options.out, slabs->cuts());
-  for (size_t s = 0; s < slabs->slabCount(); ++s)
-    folder.write(s, {toBoolGrid(*slabs->object(s, common.progress))}, common.progress);
-  folder.commit(fmt::format(R"({{"object_voxels": {}}})", slabs->objectVoxels()));
+  const SlabFolderWriter folder(options.out, slabs.cuts());
+  for (size_t s = 0; s < slabs.slabCount(); ++s)
+    folder.write(s, {toBoolGrid(*slabs.object(s, common.progress))}, common.progress);
+  folder.commit(fmt::format(R"({{"object_voxels": {}}})", slabs.objectVoxels()));
   common.progress->end();
   if (!common.quiet)
-    printVoxels(options, double(slabs->objectVoxels()),
-                double(storedDomain(*slabs->object(0))->voxelCount()));
+    printVoxels(options, double(slabs.objectVoxels()),
+                double(storedDomain(*slabs.object(0))->voxelCount()));
 }
 
 void runGenerate(const SampleKind& kind, const GenerateArguments& options, const Common& common) {

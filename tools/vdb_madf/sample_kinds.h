@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/samples/balls.h"
 #include "vdb_madf/samples/bed.h"
@@ -53,5 +54,16 @@ struct SampleKind {
 
 /// All kinds, in the order of the help.
 const std::vector<SampleKind>& sampleKinds();
+
+/// What make() gives. Nothing but options goes into it, so whatever cannot be made is their fault:
+/// an InvalidInput becomes a WrongUsage.
+template <typename Make>
+auto madeOfOptions(const Make& make) {
+  try {
+    return make();
+  } catch (const InvalidInput& error) {
+    throw WrongUsage(std::string("cannot generate this: ") + error.what());
+  }
+}
 
 }  // namespace vdb_madf::tools
