@@ -14,9 +14,9 @@
 #include "outputs.h"
 #include "parse.h"
 #include "sample_kinds.h"
+#include "slab_output.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
-#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/written_together.h"
@@ -118,11 +118,6 @@ void checkVoxels(const SampleKind& kind, const GenerateArguments& options) {
     throw WrongUsage(given + ": --surface and --scan-noise need cubes; give one edge");
 }
 
-/// Is the sample to be written in slabs, so that it may be larger than memory?
-bool isInSlabs(const GenerateArguments& options) {
-  return fileEnding(options.out) == ".slabs";
-}
-
 /// All files that the sample is written to.
 std::vector<std::string> outputsOf(const SampleKind& kind, const GenerateArguments& options) {
   std::vector<std::string> outputs{options.out};
@@ -144,7 +139,7 @@ void checkGray(const GenerateArguments& options) {
 void parse(const SampleKind& kind, GenerateArguments& options) {
   if (isOnStandardOutput(options.out))
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
-  if (isInSlabs(options)) {
+  if (hasSlabsEnding(options.out)) {
     if (kind.name != std::string("pack"))
       throw WrongUsage(options.out + ": only packs are made in slabs; give a .vdb or an image");
     if (!options.surface.empty() || !options.scanNoise.empty())
@@ -182,7 +177,7 @@ void runInSlabs(const GenerateArguments& options, const Common& common) {
 }
 
 void runGenerate(const SampleKind& kind, const GenerateArguments& options, const Common& common) {
-  if (isInSlabs(options)) return runInSlabs(options, common);
+  if (hasSlabsEnding(options.out)) return runInSlabs(options, common);
   for (const std::string& output : outputsOf(kind, options)) checkWritable(output);
   if (kind.hasTruth && !hasVdbEnding(options.out))
     checkWrittenTogether(options.out, {truthPath(options.out)});

@@ -4,7 +4,6 @@
 #include "outputs.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "vdb_madf/files/file_name.h"
@@ -46,13 +45,13 @@ bool goesWithSlabs(const std::string& file, const std::string& folder) {
 
 }  // namespace
 
-bool isWithin(const std::string& path, const std::string& folder) {
-  namespace fs = std::filesystem;
+std::filesystem::path placeOf(const std::string& path) {
   std::error_code ignored;
-  const auto place = [&](const std::string& of) {
-    return (fs::weakly_canonical(fs::absolute(of, ignored), ignored) / "").string();
-  };
-  const std::string inner = place(path), outer = place(folder);
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored) / "";
+}
+
+bool isWithin(const std::string& path, const std::string& folder) {
+  const std::string inner = placeOf(path).string(), outer = placeOf(folder).string();
   return inner.compare(0, outer.size(), outer) == 0;
 }
 

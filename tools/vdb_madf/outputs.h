@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs);
 /// @throw WrongUsage if the outputs would overwrite the input or each other, or replace the folder
 ///   that it lies in, or standard output cannot take them
 void checkOutputs(const std::vector<std::string>& outputs, const std::string& input);
+/// The path of a file or a folder, whether or not it is there; it ends with a slash.
+std::filesystem::path placeOf(const std::string& path);
 /// True if a path is that of a folder, or of something in it, be it through links.
 bool isWithin(const std::string& path, const std::string& folder);
 /// True if the output goes to standard output: "-", or "npy:-" and the like (standard_streams.h).

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,12 +42,6 @@
 namespace vdb_madf::tools {
 
 namespace {
-
-/// The path of a file or a folder, whether or not it is there.
-std::filesystem::path placeOf(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored) / "";
-}
 
 void parseFiles(SegmentArguments& o) {
   o.input.outputs = {o.out, o.json};

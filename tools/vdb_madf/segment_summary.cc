@@ -138,10 +138,8 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   json["largest_squared_distance"] = counts.largestSquaredDistance;
   json["leaves"] = counts.leaves;
   if (const auto& domain = summary.domain) {
-    json["domain_min"] = {domain->box().min().x(), domain->box().min().y(),
-                          domain->box().min().z()};
-    json["domain_max"] = {domain->box().max().x(), domain->box().max().y(),
-                          domain->box().max().z()};
+    json["domain_min"] = coordJson(domain->box().min());
+    json["domain_max"] = coordJson(domain->box().max());
     if (!domain->isBox()) json["region_voxels"] = int64_t(domain->voxelCount());
     json["porosity"] = *summary.porosity();
   }
