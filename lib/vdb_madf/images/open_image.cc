@@ -13,20 +13,10 @@
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/standard_streams.h"
-#include "vdb_madf/images/formats/dgtal_vol.h"
-#include "vdb_madf/images/formats/hdf5.h"
-#include "vdb_madf/images/formats/isq.h"
-#include "vdb_madf/images/formats/meta_image.h"
-#include "vdb_madf/images/formats/nifti.h"
-#include "vdb_madf/images/formats/npy.h"
-#include "vdb_madf/images/formats/nrrd.h"
+#include "vdb_madf/images/formats/formats.h"
 #include "vdb_madf/images/formats/picture_slice.h"
-#include "vdb_madf/images/formats/pyhst_vol.h"
-#include "vdb_madf/images/formats/raw.h"
 #include "vdb_madf/images/formats/slice_folder.h"
 #include "vdb_madf/images/formats/tiff.h"
-#include "vdb_madf/images/formats/txm.h"
-#include "vdb_madf/images/formats/zarr.h"
 
 namespace vdb_madf {
 

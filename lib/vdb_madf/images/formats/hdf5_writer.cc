@@ -12,7 +12,7 @@
 #include "vdb_madf/files/detail/hdf5_output.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/slice_counter.h"
-#include "vdb_madf/images/formats/hdf5.h"
+#include "vdb_madf/images/formats/formats.h"
 
 namespace vdb_madf::detail {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/images/formats/isq.h"
+#include "vdb_madf/images/formats/formats.h"
 
 #include <cmath>
 #include <cstring>
