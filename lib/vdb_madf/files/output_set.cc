@@ -14,7 +14,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_place.h"
-#include "vdb_madf/files/detail/write_whole.h"
+#include "vdb_madf/files/detail/read_write.h"
 #include "vdb_madf/files/read_text.h"
 
 namespace vdb_madf {

@@ -12,7 +12,7 @@
 #include <filesystem>
 
 #include "vdb_madf/files/detail/output_place.h"
-#include "vdb_madf/files/detail/write_whole.h"
+#include "vdb_madf/files/detail/read_write.h"
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_file.h"
 

@@ -13,17 +13,11 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/read_write.h"
 #include "vdb_madf/files/detail/standard_descriptors.h"
 #include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::detail {
-
-namespace {
-
-/// Linux moves at most 2 GiB in one call.
-constexpr size_t kMaxBytesPerRead = size_t(1) << 30;
-
-}  // namespace
 
 InputFile::InputFile(const std::string& path) : name_(path), path_(path) {
   open();
@@ -68,16 +62,9 @@ void InputFile::read(uint64_t offset, void* to, size_t count) const {
 }
 
 size_t InputFile::readSome(uint64_t offset, void* to, size_t count) const {
-  size_t done = 0;
-  while (done < count) {
-    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
-                                std::min(count - done, kMaxBytesPerRead), off_t(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw IoError(name_ + ": cannot be read: " + std::strerror(errno));
-    if (got == 0) break;
-    done += size_t(got);
-  }
-  return done;
+  if (const int error = readWhole(descriptor_, to, count, offset))
+    throw IoError(name_ + ": cannot be read: " + std::strerror(error));
+  return count;
 }
 
 std::string InputFile::head(size_t count) const {

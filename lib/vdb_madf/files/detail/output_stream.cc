@@ -11,8 +11,8 @@
 #include <cstring>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/read_write.h"
 #include "vdb_madf/files/detail/standard_descriptors.h"
-#include "vdb_madf/files/detail/write_whole.h"
 #include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::detail {
@@ -59,16 +59,8 @@ void OutputStream::writeAt(uint64_t position, const void* data, size_t count) {
 }
 
 size_t OutputStream::readAt(uint64_t position, void* to, size_t count) const {
-  size_t done = 0;
-  while (done < count) {
-    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
-                                std::min(count - done, kMaxBytesPerCall), off_t(position + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(errno);
-    if (got == 0) break;
-    done += size_t(got);
-  }
-  return done;
+  if (const int error = readWhole(descriptor_, to, count, position)) fail(error);
+  return count;
 }
 
 void OutputStream::resize(uint64_t size) {

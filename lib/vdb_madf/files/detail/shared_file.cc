@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "vdb_madf/files/detail/output_place.h"
-#include "vdb_madf/files/detail/write_whole.h"
+#include "vdb_madf/files/detail/read_write.h"
 
 namespace vdb_madf::detail {
 

@@ -35,4 +35,20 @@ inline int writeWhole(int descriptor, const void* data, size_t count,
   return 0;
 }
 
+/// Reads bytes of an open file from a position on: all, or up to the end of the file. `count`
+/// becomes how many there were. @return an errno, or 0
+inline int readWhole(int descriptor, void* data, size_t& count, uint64_t position) {
+  size_t done = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(descriptor, static_cast<char*>(data) + done,
+                                std::min(count - done, kMaxBytesPerCall), off_t(position + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) break;
+    done += size_t(got);
+  }
+  count = done;
+  return 0;
+}
+
 }  // namespace vdb_madf::detail
