@@ -25,6 +25,12 @@ std::string besideHeader(const std::string& header, const std::string& name) {
   return (std::filesystem::path(header).parent_path() / name).string();
 }
 
+std::unique_ptr<InputFile> openDataFile(const std::string& header, const std::string& name) {
+  if (name.compare(0, 4, "LIST") == 0 || name.find('%') != std::string::npos)
+    throw IoError(header + ": its data are spread over several files; write them into one");
+  return std::make_unique<InputFile>(header, besideHeader(header, name));
+}
+
 std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
                                           const std::array<double, 3>& spacing,
                                           std::optional<double> unitsPerMetre) {

@@ -5,12 +5,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -19,6 +21,8 @@ namespace vdb_madf::detail {
 
 /// `name` as seen from the folder of the file `header`.
 std::string besideHeader(const std::string& header, const std::string& name);
+/// The one file that holds the samples of a header. @throw IoError for a list or pattern of files
+std::unique_ptr<InputFile> openDataFile(const std::string& header, const std::string& name);
 
 /// The edges of a voxel from the spacing along x, y and z. Without a unit there is no physical
 /// size, but voxels that are not cubes are an error: they would be taken for cubes.

@@ -196,11 +196,8 @@ std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
       layout.offset = uint64_t(headerSize);
     return openSamples(path, info, std::move(file), layout);
   }
-  if (dataFile.compare(0, 4, "LIST") == 0 || dataFile.find('%') != std::string::npos)
-    throw IoError(path + ": its data are spread over several files; write them into one");
   layout.offset = uint64_t(std::max<int64_t>(headerSize, 0));
-  return openSamples(path, info, std::make_unique<InputFile>(path, besideHeader(path, dataFile)),
-                     layout);
+  return openSamples(path, info, openDataFile(path, dataFile), layout);
 }
 
 void checkMetaPlace(const std::string& path) {

@@ -179,12 +179,6 @@ uint64_t skipLines(const InputFile& file, uint64_t offset, int64_t lines) {
   return offset;
 }
 
-std::unique_ptr<InputFile> openData(const std::string& path, const std::string& dataFile) {
-  if (dataFile.compare(0, 4, "LIST") == 0 || dataFile.find('%') != std::string::npos)
-    throw IoError(path + ": its data are spread over several files; write them into one");
-  return std::make_unique<InputFile>(path, besideHeader(path, dataFile));
-}
-
 SampleLayout layoutOf(const std::string& path, const KeyValueHeader& header, SampleType type) {
   SampleLayout layout;
   const std::string encoding = lowerCase(header.require("encoding"));
@@ -246,7 +240,7 @@ std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file) {
 
   SampleLayout layout = layoutOf(path, header, info.type);
   if (const auto dataFile = header.find("datafile"))
-    file = openData(path, *dataFile);
+    file = openDataFile(path, *dataFile);
   else
     layout.offset = header.dataOffset();
   const int64_t lines = header.findInteger("lineskip").value_or(0),
