@@ -151,22 +151,15 @@ ManifoldGraph::Edge getEdge(const char* from) {
   return edge;
 }
 
-void putNumber(char* to, const uint32_t& number) {
+template <typename T>
+void putNumber(char* to, const T& number) {
   put(to, number);
 }
-uint32_t getNumber(const char* from) {
-  uint32_t number = 0;
+template <typename T>
+T getNumber(const char* from) {
+  T number = 0;
   get(from, number);
   return number;
-}
-
-void putCount(char* to, const int64_t& count) {
-  put(to, count);
-}
-int64_t getCount(const char* from) {
-  int64_t count = 0;
-  get(from, count);
-  return count;
 }
 
 void putFlag(char* to, const char& flag) {
@@ -261,11 +254,11 @@ class GraphMetadata final : public openvdb::Metadata {
     part->graph.nodes = readItems(stream, nodes, kNodeBytes, getNode);
     part->graph.edges = readItems(stream, edges, kEdgeBytes, getEdge);
     if (layout.isPart) {
-      part->number = readItems(stream, nodes, kNumberBytes, getNumber);
+      part->number = readItems(stream, nodes, kNumberBytes, getNumber<uint32_t>);
       part->goesOn = readItems(stream, nodes, kFlagBytes, getFlag);
     }
     if (layout.hasCavities) {
-      const auto counts = readItems(stream, nodes, kCountBytes, getCount);
+      const auto counts = readItems(stream, nodes, kCountBytes, getNumber<int64_t>);
       for (size_t i = 0; i < nodes; ++i) part->graph.nodes[i].cavityVoxels = counts[i];
     }
     const std::string rule = layout.isPart ? brokenRule(*part) : brokenRule(part->graph);
@@ -282,12 +275,12 @@ class GraphMetadata final : public openvdb::Metadata {
     stream.write(header.data(), header.size());
     writeItems(stream, part_->graph.nodes, kNodeBytes, putNode);
     writeItems(stream, part_->graph.edges, kEdgeBytes, putEdge);
-    writeItems(stream, part_->number, kNumberBytes, putNumber);
+    writeItems(stream, part_->number, kNumberBytes, putNumber<uint32_t>);
     writeItems(stream, part_->goesOn, kFlagBytes, putFlag);
     if (!layout.hasCavities) return;
     std::vector<int64_t> counts;
     for (const CriticalPoint& node : part_->graph.nodes) counts.push_back(node.cavityVoxels);
-    writeItems(stream, counts, kCountBytes, putCount);
+    writeItems(stream, counts, kCountBytes, putNumber<int64_t>);
   }
 
  private:
