@@ -16,6 +16,14 @@ inline uint32_t countBits(uint64_t word) {
   return uint32_t(word * 0x0101010101010101u >> 56);
 }
 
+/// Set bits of all words of a list.
+template <typename Words>
+int64_t countBitsIn(const Words& words) {
+  int64_t count = 0;
+  for (const uint64_t word : words) count += countBits(word);
+  return count;
+}
+
 /// f(bit) for the set bits of a word, ascending.
 template <typename F>
 void forEachBit(uint64_t word, const F& f) {

@@ -34,9 +34,7 @@ inline bool anyVoxel(const LeafIndex::Mask& mask) {
 }
 
 inline uint32_t countVoxels(const LeafIndex::Mask& mask) {
-  uint32_t count = 0;
-  for (const uint64_t word : mask) count += countBits(word);
-  return count;
+  return uint32_t(countBitsIn(mask));
 }
 
 inline bool meet(const LeafIndex::Mask& a, const LeafIndex::Mask& b) {

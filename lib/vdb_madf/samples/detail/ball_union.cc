@@ -71,12 +71,6 @@ void visitLeaves(const Ball& ball, const Lattice& lattice, const CoordBBox& with
     }
 }
 
-int64_t countAll(const LeafBits& words) {
-  int64_t count = 0;
-  for (const uint64_t word : words) count += countBits(word);
-  return count;
-}
-
 int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball,
                    const Lattice& lattice) {
   int64_t added = 0;
@@ -88,7 +82,7 @@ int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball,
         return;
       }
     }
-    added += countAll(words);
+    added += countBitsIn(words);
   });
   return added;
 }
@@ -100,7 +94,7 @@ int64_t addTo(Node& node, const CoordBBox& box, const Ball& ball, const Lattice&
     Leaf* leaf = node.probeLeaf(origin);
     if (!leaf) {
       if (node.isValueOn(origin)) return;
-      if (countAll(words) == 0) return;
+      if (countBitsIn(words) == 0) return;
       leaf = node.touchLeaf(origin);
     }
     uint64_t all = ~uint64_t(0);

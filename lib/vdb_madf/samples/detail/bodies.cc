@@ -102,9 +102,7 @@ class BodyList : public Bodies {
     }
     for (size_t i = 0; i < crossed.size(); ++i) {
       if (crossed[i] == 0 || result.values[i] == 1) continue;
-      int64_t inside = 0;
-      for (const uint64_t word : points[crossed[i] - 1]) inside += countBits(word);
-      result.values[i] = float(inside) / kAllPoints;
+      result.values[i] = float(countBitsIn(points[crossed[i] - 1])) / kAllPoints;
     }
     return result;
   }

@@ -83,11 +83,7 @@ class BitBox {
     }
     return sum;
   }
-  int64_t count() const {
-    int64_t sum = 0;
-    for (const uint64_t word : words_) sum += countBits(word);
-    return sum;
-  }
+  int64_t count() const { return countBitsIn(words_); }
   template <typename F>
   void forEachSet(const F& f) const {
     size_t i = 0;

@@ -29,12 +29,6 @@ constexpr int64_t kLeafValues = 512;
 /// Words of a node's mask; bit i is value i.
 using Mask = std::vector<uint64_t>;
 
-int64_t countOn(const Mask& mask) {
-  int64_t count = 0;
-  for (const uint64_t word : mask) count += countBits(word);
-  return count;
-}
-
 class TreeCheck {
  public:
   TreeCheck(InputBuffer& file, std::istream& stream, const TreeSettings& settings)
@@ -186,7 +180,7 @@ class TreeCheck {
 
     const bool activeOnly =
         (settings_.compression & COMPRESS_ACTIVE_MASK) && kind != NO_MASK_AND_ALL_VALS;
-    const int64_t stored = activeOnly ? countOn(active) : count;
+    const int64_t stored = activeOnly ? countBitsIn(active) : count;
     const TreeLayout& layout = settings_.layout;
     const bool half = settings_.half && layout.halfBytes != layout.valueBytes;
     if (half && stored == 0) return;  // then not even an empty block is stored
