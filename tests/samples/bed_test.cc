@@ -11,7 +11,7 @@
 #include "support/balls.h"
 #include "support/catch.h"
 #include "support/samples.h"
-#include "vdb_madf/samples/detail/bed_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 
 namespace {
 

@@ -13,9 +13,7 @@
 
 #include "support/catch.h"
 #include "support/samples.h"
-#include "vdb_madf/samples/detail/particle_placement.h"
-#include "vdb_madf/samples/detail/sintered_placement.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/scan.h"
 

@@ -12,7 +12,7 @@
 #include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/base/detail/portable_math.h"
-#include "vdb_madf/samples/detail/particle_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 
 namespace {
 

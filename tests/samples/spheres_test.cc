@@ -13,7 +13,7 @@
 #include "support/balls.h"
 #include "support/catch.h"
 #include "support/samples.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 
 namespace {
 

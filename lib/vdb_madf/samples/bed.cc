@@ -10,10 +10,10 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/samples/detail/ball_union.h"
-#include "vdb_madf/samples/detail/bed_placement.h"
 #include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/object_change.h"
+#include "vdb_madf/samples/detail/placement.h"
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 

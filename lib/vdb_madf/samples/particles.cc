@@ -8,7 +8,7 @@
 #include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/least_cells.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
-#include "vdb_madf/samples/detail/particle_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 
 namespace vdb_madf {

@@ -13,9 +13,9 @@
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
+#include "vdb_madf/samples/detail/placement.h"
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
-#include "vdb_madf/samples/detail/sintered_placement.h"
 #include "vdb_madf/samples/detail/white_noise.h"
 
 namespace vdb_madf {

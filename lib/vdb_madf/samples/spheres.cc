@@ -10,8 +10,8 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/ball_sample.h"
+#include "vdb_madf/samples/detail/placement.h"
 #include "vdb_madf/samples/detail/sample_options.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
 
 namespace vdb_madf {
 

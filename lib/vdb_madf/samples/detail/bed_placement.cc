@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/samples/detail/bed_placement.h"
+#include "vdb_madf/samples/detail/placement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/detail/placement.h"
+
 #include <string>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/random.h"
-#include "vdb_madf/samples/detail/sintered_placement.h"
 
 namespace vdb_madf::detail {
 

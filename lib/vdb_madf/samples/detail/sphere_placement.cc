@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/detail/placement.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -8,7 +10,6 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/random.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
 
 namespace vdb_madf::detail {
 
