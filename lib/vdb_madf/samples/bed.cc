@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/ball_sample.h"
 #include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/object_change.h"
 #include "vdb_madf/samples/detail/placement.h"
-#include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 
 namespace vdb_madf {
@@ -100,18 +99,13 @@ Sample generateBed(const BedOptions& options, Interrupter* interrupter) {
 
   std::vector<Ball> balls = detail::dropBalls(options, interrupter);
   detail::sortByCenter(balls);
-  detail::BallUnion object(options.size, false);
-  object.add(balls, interrupter);
-  Sample sample;
-  sample.object = MaskGrid::create(object.takeTree());
-  sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
   detail::SourceText source("bed");
   source.size(options.size)
       .range("radius", options.minRadius, options.maxRadius)
       .add("rounds", std::to_string(options.rounds))
       .add("seed", std::to_string(options.seed));
-  sample.bodies = detail::ballBodies(balls, {});
-  sample = detail::described(sample, options.size, source);
+  Sample sample = detail::described(detail::ballSample(balls, options.size, {}, interrupter),
+                                    options.size, source);
   for (int round = 0; round < options.rounds; ++round) {
     const auto bed = std::make_shared<SinteredBed>(sample, interrupter);
     const Sintering& sintering = bed->sintering();
