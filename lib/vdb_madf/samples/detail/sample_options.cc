@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
-#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -59,18 +58,15 @@ SourceText& SourceText::size(const Coord& size) {
 }
 
 SourceText& SourceText::range(const char* option, double lower, double upper) {
-  return add(option, number(lower) + ":" + number(upper));
+  return add(option, shortestDecimal(lower) + ":" + shortestDecimal(upper));
 }
 
 SourceText& SourceText::edges(const std::optional<VoxelSize>& voxelSize) {
   if (!voxelSize || voxelSize->isCube()) return *this;
   const auto edges = voxelSize->edgesInUnit();
-  return add("voxel-size", fmt::format("{}x{}x{}{}", number(edges[0]), number(edges[1]),
-                                       number(edges[2]), voxelSize->unit()));
-}
-
-std::string SourceText::number(double value) {
-  return shortestDecimal(value);
+  return add("voxel-size",
+             fmt::format("{}x{}x{}{}", shortestDecimal(edges[0]), shortestDecimal(edges[1]),
+                         shortestDecimal(edges[2]), voxelSize->unit()));
 }
 
 Sample described(Sample sample, const Coord& size, const SourceText& source,

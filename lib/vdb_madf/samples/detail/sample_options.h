@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/samples/sample.h"
 
@@ -30,7 +31,7 @@ class SourceText {
   static SourceText of(const openvdb::GridBase& grid);
   SourceText& size(const Coord& size);
   SourceText& add(const char* option, const std::string& value);
-  SourceText& add(const char* option, double value) { return add(option, number(value)); }
+  SourceText& add(const char* option, double value) { return add(option, shortestDecimal(value)); }
   SourceText& range(const char* option, double lower, double upper);
   /// Adds the edges of voxels that are no cubes.
   SourceText& edges(const std::optional<VoxelSize>& voxelSize);
@@ -38,8 +39,6 @@ class SourceText {
 
  private:
   SourceText() = default;
-  /// The shortest decimal that reads back as the same double, in any locale.
-  static std::string number(double value);
 
   std::string text_;
 };
