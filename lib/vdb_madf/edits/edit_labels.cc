@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/detail/grain_parts.h"
@@ -169,7 +170,7 @@ class Editor {
       voxels.push_back(grain.voxels);
     }
     const auto place = [&](int32_t number) {
-      return uint32_t(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+      return uint32_t(detail::sortedIndex(numbers, number));
     };
     std::vector<GrainContact> contacts;
     for (const auto& [first, second, faces] : detail::labelContacts(grid(), interrupter_))
@@ -181,9 +182,7 @@ class Editor {
       result_.grains.push_back(numbers[into[i]]);
       ++result_.joinedGrains;
     }
-    std::vector<int32_t>& grown = result_.grains;
-    std::sort(grown.begin(), grown.end());
-    grown.erase(std::unique(grown.begin(), grown.end()), grown.end());
+    detail::sortUnique(result_.grains);
   }
 
   void renumber() {

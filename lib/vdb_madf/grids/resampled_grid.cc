@@ -11,6 +11,7 @@
 
 #include "vdb_madf/base/detail/cubes_along.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
@@ -230,8 +231,7 @@ class NearestLabels {
     detail::forEachActiveTile(tree, [&](const CoordBBox& box) { add(box); });
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
       if (!leaf->isEmpty()) add(leaf->getNodeBoundingBox());
-    std::sort(origins_.begin(), origins_.end());
-    origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());
+    detail::sortUnique(origins_);
   }
 
   void run(Int32Tree& result, Interrupter* interrupter) const {

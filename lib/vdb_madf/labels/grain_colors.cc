@@ -13,6 +13,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
@@ -129,11 +130,6 @@ void forEachContact(const detail::LabelHalo& halo, const F& f) {
       }
 }
 
-void sortUnique(std::vector<Pair>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-}
-
 struct Contacts {
   std::vector<int32_t> labels;  ///< ascending
   std::vector<Pair> pairs;      ///< of labels, ascending
@@ -160,13 +156,13 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
                               somePairs.emplace_back(a, b);
                           });
                         }
-                        sortUnique(somePairs);
+                        detail::sortUnique(somePairs);
                         // Sets: the order in which the parts arrive does not matter.
                         const std::lock_guard<std::mutex> lock(mutex);
                         labels.insert(someLabels.begin(), someLabels.end());
                         pairs.insert(pairs.end(), somePairs.begin(), somePairs.end());
                       });
-  sortUnique(pairs);
+  detail::sortUnique(pairs);
   return {{labels.begin(), labels.end()}, std::move(pairs)};
 }
 
@@ -182,9 +178,7 @@ std::vector<T> united(const std::vector<T>& a, const std::vector<T>& b) {
 using Graph = std::vector<std::vector<uint32_t>>;  ///< the neighbors of each label's index
 
 Graph asGraph(const std::vector<int32_t>& labels, const std::vector<Pair>& pairs) {
-  const auto indexOf = [&](int32_t label) {
-    return uint32_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
-  };
+  const auto indexOf = [&](int32_t label) { return uint32_t(detail::sortedIndex(labels, label)); };
   Graph graph(labels.size());
   for (const auto& [a, b] : pairs) {
     const uint32_t i = indexOf(a), j = indexOf(b);

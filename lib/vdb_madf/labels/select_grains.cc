@@ -8,6 +8,7 @@
 #include <string>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -22,8 +23,7 @@ using Leaf = Int32Tree::LeafNodeType;
 class Wanted {
  public:
   explicit Wanted(std::vector<int32_t> labels) : labels_(std::move(labels)) {
-    std::sort(labels_.begin(), labels_.end());
-    labels_.erase(std::unique(labels_.begin(), labels_.end()), labels_.end());
+    detail::sortUnique(labels_);
     if (!labels_.empty() && labels_.front() < 1)
       throw InvalidInput("grain " + std::to_string(labels_.front()) +
                          " cannot be: labels are 1 and more");
@@ -32,9 +32,7 @@ class Wanted {
   bool holds(int32_t label) const {
     return std::binary_search(labels_.begin(), labels_.end(), label);
   }
-  void find(int32_t label) {
-    found_[size_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin())] = 1;
-  }
+  void find(int32_t label) { found_[detail::sortedIndex(labels_, label)] = 1; }
   void checkAllFound() const {
     for (size_t i = 0; i < labels_.size(); ++i)
       if (!found_[i]) throw InvalidInput("there is no grain " + std::to_string(labels_[i]));

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/measure/columns.h"
@@ -37,7 +38,7 @@ std::vector<GrainNetwork::Column> inWorld(std::vector<MeasureColumn> columns,
 }
 
 uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
-  return uint32_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
+  return uint32_t(detail::sortedIndex(labels, label));
 }
 
 /// @param labels a grid or slabs

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -237,12 +238,6 @@ void forEachRow(const detail::Camera& camera, Interrupter* interrupter, const F&
                           [&](size_t y) { work(int(y)); });
 }
 
-/// Sorts the leaves from `first` on.
-void sortUnique(std::vector<Coord>& leaves, size_t first) {
-  std::sort(leaves.begin() + std::ptrdiff_t(first), leaves.end());
-  leaves.erase(std::unique(leaves.begin() + std::ptrdiff_t(first), leaves.end()), leaves.end());
-}
-
 /// The leaves whose voxels some rays of each pixel meet first, ascending.
 std::vector<Coord> leavesSeen(const detail::VoxelRays& rays, const detail::Camera& camera,
                               int firstRay, int endRay, Interrupter* interrupter) {
@@ -259,11 +254,11 @@ std::vector<Coord> leavesSeen(const detail::VoxelRays& rays, const detail::Camer
         const Coord leaf = voxel & ~7;
         if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
       }
-    sortUnique(leaves, before);
+    detail::sortUnique(leaves, before);
   });
   std::vector<Coord> all;
   for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
-  sortUnique(all, 0);
+  detail::sortUnique(all);
   return all;
 }
 
@@ -279,7 +274,7 @@ std::vector<Coord> leavesAround(const std::vector<Coord>& leaves, const MaskGrid
       const Coord beside = detail::around(leaf, side);
       if (object.tree().probeConstLeaf(beside)) found.push_back(beside);
     }
-  sortUnique(found, 0);
+  detail::sortUnique(found);
   return found;
 }
 

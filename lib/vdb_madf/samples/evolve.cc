@@ -7,7 +7,6 @@
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/ValueAccessor.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/portable_math.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
@@ -225,8 +225,7 @@ std::vector<Target> targetsOf(const std::vector<const LabelLeaf*>& leaves,
                                 [&](const Coord& origin) { targets.emplace_back(origin, label); });
     }
   }
-  std::sort(targets.begin(), targets.end());
-  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  detail::sortUnique(targets);
   return targets;
 }
 

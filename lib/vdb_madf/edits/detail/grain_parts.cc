@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/detail/last_join.h"
 #include "vdb_madf/edits/detail/weakest_neck.h"
@@ -275,11 +276,7 @@ VoxelArray<uint32_t> GrainParts::placesIn(const GrainPart& part, const LeafIndex
         const int32_t number = node ? node->getValue(offsetOf(id)) : tile;
         if (number != last) {
           last = number;
-          const auto found =
-              std::lower_bound(part.nodes.begin(), part.nodes.end(), uint32_t(number - 1));
-          place = found != part.nodes.end() && *found == uint32_t(number - 1)
-                      ? uint32_t(found - part.nodes.begin())
-                      : kForeign;
+          place = uint32_t(findSorted(part.nodes, uint32_t(number - 1)).value_or(kForeign));
         }
         places[rank] = place;
       });

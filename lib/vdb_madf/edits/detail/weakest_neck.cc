@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/detail/sorted.h"
 
 namespace vdb_madf::detail {
 
@@ -30,11 +31,9 @@ std::vector<Neck> necksWithin(const ManifoldGraph& graph, const std::vector<uint
   for (uint32_t place = 0; place < nodes.size(); ++place) {
     auto edge = std::lower_bound(graph.edges.begin(), graph.edges.end(), nodes[place],
                                  [](const Edge& e, uint32_t node) { return e.first < node; });
-    for (; edge != graph.edges.end() && edge->first == nodes[place]; ++edge) {
-      const auto other = std::lower_bound(nodes.begin(), nodes.end(), edge->second);
-      if (other != nodes.end() && *other == edge->second)
-        necks.push_back({place, uint32_t(other - nodes.begin()), std::max(edge->saddleHeight, 0)});
-    }
+    for (; edge != graph.edges.end() && edge->first == nodes[place]; ++edge)
+      if (const auto other = findSorted(nodes, edge->second))
+        necks.push_back({place, uint32_t(*other), std::max(edge->saddleHeight, 0)});
   }
   return necks;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/label_sizes.h"
 
@@ -83,8 +84,7 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
 
 LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
   for (const Leaf* leaf : leavesOf(*tree_)) addOrigins(*leaf, origins_);
-  std::sort(origins_.begin(), origins_.end());
-  origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());
+  sortUnique(origins_);
   for (const auto& [label, voxels] : labelSizes(labels)) {
     labels_.push_back(label);
     voxelCounts_.push_back(voxels);
@@ -92,14 +92,13 @@ LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) 
 }
 
 size_t LabelBlocks::find(const Coord& origin) const {
-  const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
-  return found != origins_.end() && *found == origin ? size_t(found - origins_.begin()) : kNone;
+  return findSorted(origins_, origin).value_or(kNone);
 }
 
 uint32_t LabelBlocks::number(int32_t label) const {
   const auto dense = size_t(int64_t(label) - labels_.front());  // mostly there are no gaps
   if (dense < labels_.size() && labels_[dense] == label) return uint32_t(dense);
-  return uint32_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin());
+  return uint32_t(sortedIndex(labels_, label));
 }
 
 }  // namespace vdb_madf::detail

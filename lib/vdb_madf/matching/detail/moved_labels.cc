@@ -3,11 +3,11 @@
 
 #include "vdb_madf/matching/detail/moved_labels.h"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -26,8 +26,7 @@ std::vector<Coord> targets(const std::vector<const Leaf*>& leaves, const Coord& 
     moved.translate(shift);
     forEachLeafOrigin(moved, [&](const Coord& origin) { origins.push_back(origin); });
   }
-  std::sort(origins.begin(), origins.end());
-  origins.erase(std::unique(origins.begin(), origins.end()), origins.end());
+  sortUnique(origins);
   return origins;
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/measure/detail/convex_hull.h"
 
 namespace vdb_madf::detail {
@@ -88,8 +89,7 @@ GrainShape shapeOf(const std::vector<Row>& rows, const VoxelShape& voxel) {
     addCorners(&*row, &*row + (next - row), corners);
     row = next;
   }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sortUnique(corners);
   std::vector<Vec3d> points;
   points.reserve(corners.size());
   for (const Coord& corner : corners)

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/measure/detail/voxel_shape.h"
@@ -71,11 +72,6 @@ class KeyRow {
 
 uint64_t pairOf(int32_t a, int32_t b) {
   return uint64_t(uint32_t(std::min(a, b))) << 32 | uint32_t(std::max(a, b));
-}
-
-void keepOnce(std::vector<uint64_t>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
 }  // namespace
@@ -199,7 +195,7 @@ void VoronoiCells::count(int begin, int end, Part& part) const {
         if (y + 1 < ny) touch(label, own[i + 1]);
         touch(label, next[i]);
       }
-    keepOnce(part.neighbors);
+    sortUnique(part.neighbors);
     below = std::move(level);
     level = std::move(above);
     own = std::move(next);
@@ -221,7 +217,7 @@ std::unordered_map<int32_t, VoronoiCells::Cell> VoronoiCells::cells(
     whole.neighbors.insert(whole.neighbors.end(), part.neighbors.begin(), part.neighbors.end());
     part = {};
   }
-  keepOnce(whole.neighbors);
+  sortUnique(whole.neighbors);
   for (const uint64_t pair : whole.neighbors) {
     ++whole.cells[int32_t(pair >> 32)].neighbors;
     ++whole.cells[int32_t(pair & 0xffffffff)].neighbors;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "vdb_madf/base/detail/sorted.h"
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -49,13 +51,11 @@ void ForeignSites::name(LeafIndex& index) {
       const Coord leaf = named.site.position & ~7;
       if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
     }
-  std::sort(leaves.begin(), leaves.end());
-  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  sortUnique(leaves);
   for (auto* side : {&below_, &above_})
     for (Named& named : *side) {
       const Coord& p = named.site.position;
-      const auto leaf = std::lower_bound(leaves.begin(), leaves.end(), p & ~7);
-      named.id = voxelId(index.leafCount() + size_t(leaf - leaves.begin()), offsetOf(p));
+      named.id = voxelId(index.leafCount() + sortedIndex(leaves, p & ~7), offsetOf(p));
     }
   index.nameForeignLeaves(leaves);
 }

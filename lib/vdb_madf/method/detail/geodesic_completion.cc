@@ -7,6 +7,7 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/metric.h"
 
@@ -50,8 +51,7 @@ std::vector<uint32_t> GeodesicCompletion::takeFrontWords() {
   std::vector<uint32_t> words;
   if (frontWords_) {
     words.swap(*frontWords_);
-    std::sort(words.begin(), words.end());
-    words.erase(std::unique(words.begin(), words.end()), words.end());
+    sortUnique(words);
   } else {
     for (size_t i = 0; i < front_.wordCount(); ++i)
       if (front_.word(i)) words.push_back(uint32_t(i));

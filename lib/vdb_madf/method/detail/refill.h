@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
@@ -83,8 +84,7 @@ std::vector<uint32_t> refill(size_t count, const Around& around, const Give& giv
       isOpen[front[i]] = 0;
       beside(front[i], [&](uint32_t j) { next.push_back(j); });
     }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
+    sortUnique(next);
     next.erase(std::remove_if(next.begin(), next.end(), [&](uint32_t j) { return !isOpen[j]; }),
                next.end());
     front.swap(next);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
@@ -76,8 +77,7 @@ class LeafSmoothing {
           labels_.push_back(entry->label);
     }
     if (labels_.size() == own) return;
-    std::sort(labels_.begin(), labels_.end());
-    labels_.erase(std::unique(labels_.begin(), labels_.end()), labels_.end());
+    sortUnique(labels_);
   }
 
   void findMasks(uint32_t leaf) {

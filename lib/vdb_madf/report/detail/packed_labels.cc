@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/report/detail/packed_bytes.h"
@@ -27,8 +28,8 @@ class Places {
   uint32_t operator()(int32_t label) {
     if (label == label_) return place_;
     label_ = label;
-    const auto found = std::lower_bound(ids_.begin(), ids_.end(), label);
-    return place_ = found != ids_.end() && *found == label ? uint32_t(found - ids_.begin()) + 1 : 0;
+    const auto found = findSorted(ids_, label);
+    return place_ = found ? uint32_t(*found) + 1 : 0;
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/shapes/detail/surface_net.h"
 
@@ -97,9 +98,7 @@ class QuadCutter {
     const size_t none = net_.pinches.size(), corners = isAtPinch_.size();
     if (from >= corners || to >= corners || !isAtPinch_[from] || !isAtPinch_[to]) return none;
     const std::array<uint32_t, 2> edge{std::min(from, to), std::max(from, to)};
-    const auto place = std::lower_bound(net_.pinches.begin(), net_.pinches.end(), edge);
-    return place != net_.pinches.end() && *place == edge ? size_t(place - net_.pinches.begin())
-                                                         : none;
+    return findSorted(net_.pinches, edge).value_or(none);
   }
 
   /// The two quads of a voxel share a point there.

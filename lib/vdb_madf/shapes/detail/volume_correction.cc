@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/shapes/detail/grain_pressures.h"
 
 namespace vdb_madf::detail {
@@ -136,8 +137,7 @@ class VolumeCorrection {
           const uint32_t grain = mesh_.pointGrain[other];
           if (grain != g && (list.empty() || list.back() != grain)) list.push_back(grain);
         });
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
+      sortUnique(list);
     });
     equations_.first.push_back(0);
     for (const auto& list : lists) {
