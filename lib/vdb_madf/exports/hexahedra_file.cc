@@ -71,19 +71,13 @@ void writeInp(const std::string& path, const Hexahedra& mesh, Interrupter* inter
   size_t node = 0;
   mesh.forEachNode([&](const Vec3d& place) {
     out.number(++node);
-    for (int axis = 0; axis < 3; ++axis) {
-      out.text(", ");
-      out.number(place[axis]);
-    }
+    for (int axis = 0; axis < 3; ++axis) out.number(", ", place[axis]);
     out.text("\n");
   });
   for (size_t i = 0; i < mesh.counts().elements; ++i) {
     if (mesh.isFirst(i)) out.text("*ELEMENT, TYPE=C3D8, ELSET=" + grainName(mesh.label(i)) + "\n");
     out.number(i + 1);
-    for (const uint32_t corner : mesh.nodes(i)) {
-      out.text(", ");
-      out.number(uint64_t(corner) + 1);
-    }
+    for (const uint32_t corner : mesh.nodes(i)) out.number(", ", uint64_t(corner) + 1);
     out.text("\n");
   }
   writeFaceSets(out, mesh);

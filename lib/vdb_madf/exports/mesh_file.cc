@@ -62,10 +62,7 @@ void writePly(const std::string& path, const WorldMesh& world, Interrupter* inte
 
 /// Three numbers from 0 to 1.
 void writeColor(OutputStream& out, const Rgb& color) {
-  for (const uint8_t channel : color) {
-    out.text(" ");
-    out.number(float(channel) / 255.0f);
-  }
+  for (const uint8_t channel : color) out.number(" ", float(channel) / 255.0f);
 }
 
 /// With a file of materials beside it: few programs show colors of points.
@@ -82,10 +79,7 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
     for (uint32_t i = points[grain]; i < points[grain + 1]; ++i) {
       const Vec3f p = world.point(i);
       out.text("v");
-      for (int axis = 0; axis < 3; ++axis) {
-        out.text(" ");
-        out.number(p[axis]);
-      }
+      for (int axis = 0; axis < 3; ++axis) out.number(" ", p[axis]);
       writeColor(out, color);
       out.text("\n");
     }
@@ -99,10 +93,7 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
     const auto& triangles = world.mesh().firstTriangle;
     for (uint32_t i = triangles[grain]; i < triangles[grain + 1]; ++i) {
       out.text("f");
-      for (const uint32_t corner : world.triangle(i)) {
-        out.text(" ");
-        out.number(uint64_t(corner) + 1);
-      }
+      for (const uint32_t corner : world.triangle(i)) out.number(" ", uint64_t(corner) + 1);
       out.text("\n");
     }
   }

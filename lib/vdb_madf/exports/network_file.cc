@@ -157,10 +157,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
       out.text(noGrain);
     }
     if (i < network.bonds.size()) {
-      for (const uint32_t end : network.bonds[i]) {
-        out.text(",");
-        out.number(end);
-      }
+      for (const uint32_t end : network.bonds[i]) out.number(",", end);
       for (const Column& column : throats) cell(column.values[i]);
     } else {
       out.text(noBond);

@@ -48,6 +48,12 @@ class OutputStream {
     char decimal[kDecimalBytes];
     bytes(decimal, size_t(writeDecimal(value, decimal) - decimal));
   }
+  /// A number after a separator.
+  template <typename T>
+  void number(const char* separator, T value) {
+    text(separator);
+    number(value);
+  }
 
   // Bytes at any place are written without the buffer: not together with the functions above.
   void writeAt(uint64_t position, const void* data, size_t count);
