@@ -5,12 +5,12 @@
 
 #include <openvdb/Metadata.h>
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/exports/detail/grain_table.h"
 #include "vdb_madf/exports/detail/hdf5_tables.h"
 #include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/detail/output_stream.h"
@@ -29,18 +29,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Nine digits; whole numbers whole; empty where there is no value.
-std::string cell(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges) {
-  const double value = column.values[row];
-  if (std::isnan(value)) return "";
-  if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
-  const double number = scaled(column, value, edges);
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,
-                                 std::chars_format::general, 9);
-  return {text, end.ptr};
-}
-
 /// Comma-separated values.
 std::string table(const std::vector<MeasureColumn>& columns, const TableUnit& unit,
                   const std::string& sample) {
@@ -54,7 +42,7 @@ std::string table(const std::vector<MeasureColumn>& columns, const TableUnit& un
     text += first;
     for (const MeasureColumn& column : columns) {
       if (&column != &columns.front()) text += ',';
-      text += cell(column, row, unit.edges);
+      text += detail::measureText(column, row, unit.edges);
     }
     text += '\n';
   }

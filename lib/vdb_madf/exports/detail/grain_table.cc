@@ -10,6 +10,17 @@
 
 namespace vdb_madf::detail {
 
+std::string measureText(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges) {
+  const double value = column.values[row];
+  if (std::isnan(value)) return "";
+  if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
+  const double number = scaled(column, value, edges);
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,
+                                 std::chars_format::general, 9);
+  return {text, end.ptr};
+}
+
 GrainTable::GrainTable(const Measurements& measured)
     : columns_(grainColumns(measured.grains)), edges_(TableUnit(measured).edges) {
   const std::string unit = TableUnit(measured).name;
@@ -19,16 +30,6 @@ GrainTable::GrainTable(const Measurements& measured)
 
 bool GrainTable::isKnown(size_t row, size_t column) const {
   return std::isfinite(columns_[column].values[row]);
-}
-
-std::string GrainTable::number(size_t row, size_t column) const {
-  const MeasureColumn& own = columns_[column];
-  if (own.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(own.values[row]));
-  const double value = scaled(own, own.values[row], edges_);
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value == 0 ? 0.0 : value,
-                                 std::chars_format::general, 9);
-  return {text, end.ptr};
 }
 
 }  // namespace vdb_madf::detail

@@ -11,6 +11,10 @@
 
 namespace vdb_madf::detail {
 
+/// The number in a row of a column, where voxels have these edges: nine digits; whole numbers
+/// whole; empty where there is no value.
+std::string measureText(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges);
+
 /// The measures of grains by the names and in the units of the table of grains, as text of JSON.
 class GrainTable {
  public:
@@ -22,8 +26,9 @@ class GrainTable {
   const std::string& name(size_t column) const { return names_[column]; }
   /// False where a measure is not known.
   bool isKnown(size_t row, size_t column) const;
-  /// Nine digits; whole numbers whole.
-  std::string number(size_t row, size_t column) const;
+  std::string number(size_t row, size_t column) const {
+    return measureText(columns_[column], row, edges_);
+  }
 
  private:
   std::vector<MeasureColumn> columns_;
