@@ -4,7 +4,6 @@
 #include "vdb_madf/grids/object_mask.h"
 
 #include <type_traits>
-#include <vector>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
-#include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/matching/detail/following.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
