@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/slabs/cuts/face_voxels.h"
@@ -41,8 +42,7 @@ std::vector<PieceJoin> pieceJoins(const std::vector<FacePiece>& below,
   forEachFacing(below, above, [&](const FacePiece& p, const FacePiece& q) {
     if (p.label == q.label) pairs.emplace_back(p.piece, q.piece);
   });
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sortUnique(pairs);
   std::vector<PieceJoin> joins;
   for (const auto& [p, q] : pairs) joins.push_back({p, q});
   return joins;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "vdb_madf/base/detail/sorted.h"
 #include "vdb_madf/slabs/cuts/point_numbers.h"
 #include "vdb_madf/slabs/cuts/slab_exits.h"
 #include "vdb_madf/slabs/cuts/slab_part.h"
@@ -62,11 +63,8 @@ class PartSteps {
       contacts = SlabTerminals::contacts(work_.store.receive(kHighest, s - 1, s),
                                          work_.store.read(kLowest, s));
       for (const Edge& edge : contacts) touched.push_back(edge.first);
-      std::sort(touched.begin(), touched.end());
-      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-      for (Edge& edge : contacts)
-        edge.first = uint32_t(std::lower_bound(touched.begin(), touched.end(), edge.first) -
-                              touched.begin());
+      sortUnique(touched);
+      for (Edge& edge : contacts) edge.first = uint32_t(sortedIndex(touched, edge.first));
       work_.store.send(kTouched, s, s - 1, touched);
     }
     work_.store.write(kContacts, s, contacts);
