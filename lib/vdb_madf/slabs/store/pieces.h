@@ -130,6 +130,9 @@ template <typename T>
 using Values = std::vector<T>;
 using Leaves = std::vector<LeafIndex::LeafVoxels>;
 
+// Groups stand in the order in which steps write them: after a step, what stands so far is in
+// scratch if its last step is still to come.
+
 // How far a slab is: the last step it has done, by number; whether its grids are put.
 inline constexpr Piece<int> kDone("step", Step::never);
 inline constexpr Piece<char> kPut("put", Step::never);
