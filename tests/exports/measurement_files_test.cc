@@ -313,7 +313,7 @@ TEST_CASE("measurement_files: HDF5 has every column with all its digits and its 
       const std::string name = table + "/" + column.name;
       CAPTURE(name);
       CHECK(unitsOf(file, name) == units.at(column.power));
-      if (column.kind == MeasureColumn::Kind::count) {
+      if (column.isWhole()) {
         CHECK(hdf5Values<int64_t>(file, name) ==
               std::vector<int64_t>(column.values.begin(), column.values.end()));
         continue;

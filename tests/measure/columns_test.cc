@@ -182,7 +182,8 @@ TEST_CASE("columns: each holds the measure of its name", "[columns]") {
                                          "gaussian_curvature_sd", "curvature_residual"});
 }
 
-TEST_CASE("columns: places know their axes, counts are marked", "[columns]") {
+TEST_CASE("columns: places know their axes, what is whole is marked", "[columns]") {
+  using Kind = MeasureColumn::Kind;
   const std::vector<MeasureColumn> grains = grainColumns({}), bonds = bondColumns({});
   for (const auto* columns : {&grains, &bonds})
     for (const char* axis : {"x", "y", "z"}) {
@@ -190,13 +191,17 @@ TEST_CASE("columns: places know their axes, counts are marked", "[columns]") {
       CHECK(place.kind == MeasureColumn::Kind::place);
       CHECK(place.axis == axis[0] - 'x');
     }
-  std::string counts;
+  std::map<Kind, std::string> names;
   for (const auto* columns : {&grains, &bonds})
-    for (const MeasureColumn& one : *columns)
-      if (one.kind == MeasureColumn::Kind::count) counts += one.name + " ";
-  CHECK(counts ==
-        "id voxels box_min_x box_min_y box_min_z box_max_x box_max_y box_max_z coordination "
-        "at_domain_face first second faces patches curvature_points ");
+    for (const MeasureColumn& one : *columns) {
+      CHECK(one.isWhole() == (one.kind != Kind::number && one.kind != Kind::place));
+      names[one.kind] += one.name + " ";
+    }
+  CHECK(names[Kind::count] ==
+        "voxels box_min_x box_min_y box_min_z box_max_x box_max_y box_max_z coordination faces "
+        "patches curvature_points ");
+  CHECK(names[Kind::label] == "id first second ");
+  CHECK(names[Kind::flag] == "at_domain_face ");
 }
 
 TEST_CASE("columns: powers of a length", "[columns]") {

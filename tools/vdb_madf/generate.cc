@@ -14,7 +14,6 @@
 #include "outputs.h"
 #include "parse.h"
 #include "sample_kinds.h"
-#include "slab_output.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/output_set.h"

@@ -103,6 +103,9 @@ bool hasRawEnding(const std::string& path) {
 bool hasPngEnding(const std::string& path) {
   return fileEnding(path) == ".png";
 }
+bool hasSlabsEnding(const std::string& path) {
+  return fileEnding(path) == ".slabs";
+}
 void checkTableEnding(const std::string& path) {
   if (!isOnStandardOutput(path) && fileEnding(path) != ".csv")
     throw WrongUsage(path + ": the output's ending must be .csv");

@@ -29,6 +29,8 @@ bool hasVdbEnding(const std::string& path);
 bool hasTiffEnding(const std::string& path);
 bool hasRawEnding(const std::string& path);
 bool hasPngEnding(const std::string& path);
+/// True for a folder of slabs.
+bool hasSlabsEnding(const std::string& path);
 /// A table goes to a .csv or to "-". @throw WrongUsage
 void checkTableEnding(const std::string& path);
 

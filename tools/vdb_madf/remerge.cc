@@ -12,7 +12,6 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "remerge_slabs.h"
-#include "slab_output.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"

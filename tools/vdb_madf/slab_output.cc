@@ -12,9 +12,9 @@
 
 #include "estimate.h"
 #include "member_failure.h"
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
@@ -86,10 +86,6 @@ MaskGrid::Ptr storedAbout(const WorkPlace& place) {
 }
 
 }  // namespace
-
-bool hasSlabsEnding(const std::string& path) {
-  return fileEnding(path) == ".slabs";
-}
 
 void checkSlabArguments(const SegmentArguments& o) {
   const bool isSlabs = hasSlabsEnding(o.out);

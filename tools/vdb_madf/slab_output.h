@@ -12,9 +12,6 @@ namespace vdb_madf::tools {
 // What `segment` does for an output like OUT.slabs: a folder of parts, from slabs that need not fit
 // in memory together.
 
-/// True for the ending .slabs.
-bool hasSlabsEnding(const std::string& path);
-
 /// Checks the options of an output in slabs. @throw WrongUsage for what slabs do not know
 void checkSlabArguments(const SegmentArguments& o);
 

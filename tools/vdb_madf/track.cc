@@ -15,7 +15,6 @@
 #include "label_pair.h"
 #include "outputs.h"
 #include "parse.h"
-#include "slab_output.h"
 #include "text_file.h"
 #include "track_output.h"
 #include "vdb_madf/base/errors.h"

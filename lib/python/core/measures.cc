@@ -38,21 +38,11 @@ std::string powerOf(const TableUnit& unit, int exponent) {
   return (exponent < 0 ? "1/" : "") + positive;
 }
 
-bool isFlag(const std::string& name) {
-  for (const char* flag : {"at_domain_face", "bonded", "cell_at_domain_face", "neck_confirmed",
-                           "cut_x", "cut_y", "cut_z"})
-    if (name == flag) return true;
-  return false;
-}
-bool isLabel(const std::string& name) {
-  return name == "id" || name == "first" || name == "second";
-}
-
 py::object columnArray(const MeasureColumn& c, const TableUnit& unit) {
-  if (isFlag(c.name)) return column<bool>(c.values, [](double v) { return v != 0; });
-  if (isLabel(c.name)) return column<int32_t>(c.values, [](double v) { return v; });
-  if (c.kind == MeasureColumn::Kind::count)
-    return column<int64_t>(c.values, [](double v) { return v; });
+  using Kind = MeasureColumn::Kind;
+  if (c.kind == Kind::flag) return column<bool>(c.values, [](double v) { return v != 0; });
+  if (c.kind == Kind::label) return column<int32_t>(c.values, [](double v) { return v; });
+  if (c.kind == Kind::count) return column<int64_t>(c.values, [](double v) { return v; });
   return column<double>(c.values, [&](double v) { return scaled(c, v, unit.edges) + 0.0; });
 }
 

@@ -72,6 +72,14 @@ class ColumnMaker {
   void addCount(const std::string& name, const Number& number) {
     add(name, 0, number, Kind::count);
   }
+  template <typename Number>
+  void addLabel(const std::string& name, const Number& number) {
+    add(name, 0, number, Kind::label);
+  }
+  template <typename Number>
+  void addFlag(const std::string& name, const Number& number) {
+    add(name, 0, number, Kind::flag);
+  }
   /// Three columns.
   template <typename Vector>
   void addVector(const std::string& name, const Vector& vector, Kind kind = Kind::number) {
@@ -105,7 +113,7 @@ void addCells(ColumnMaker<GrainMeasures>& make) {
   make.add("local_solid_fraction", 0,
            [](const G& g) { return g.cell ? g.localSolidFraction() : kNone; });
   make.addCount("cell_neighbors", [](const G& g) { return g.cell ? g.cell->neighbors : 0; });
-  make.addCount("cell_at_domain_face", [](const G& g) { return g.cell && g.cell->atDomainFace; });
+  make.addFlag("cell_at_domain_face", [](const G& g) { return g.cell && g.cell->atDomainFace; });
 }
 
 /// Adds the columns of grains or bonds.
@@ -131,7 +139,7 @@ void addNecks(ColumnMaker<BondMeasures>& make) {
   make.add("neck_radius", 1, ofNeck(&Neck::radius));
   make.add("neck_error", 2, ofNeck(&Neck::error));
   make.add("neck_gap", 1, ofNeck(&Neck::gap));
-  make.addCount("neck_confirmed", [](const B& b) { return b.neck && b.neck->confirmed; });
+  make.addFlag("neck_confirmed", [](const B& b) { return b.neck && b.neck->confirmed; });
   make.addVector("neck_normal", [](const B& b) { return b.neck ? b.neck->normal : Vec3d(kNone); });
 }
 
@@ -154,7 +162,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
                                         const ExtraMeasures& extra) {
   using G = GrainMeasures;
   ColumnMaker<G> make(grains);
-  make.addCount("id", [](const G& g) { return g.id; });
+  make.addLabel("id", [](const G& g) { return g.id; });
   make.addCount("voxels", [](const G& g) { return g.voxels; });
   make.add("volume", 3, [](const G& g) { return g.volume; });
   make.add("equivalent_diameter", 1, [](const G& g) { return g.equivalentDiameter; });
@@ -185,7 +193,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   make.addVector(
       "box_max", [](const G& g) { return g.box.max(); }, Kind::count);
   make.addCount("coordination", [](const G& g) { return g.coordination; });
-  make.addCount("at_domain_face", [](const G& g) { return g.atDomainFace; });
+  make.addFlag("at_domain_face", [](const G& g) { return g.atDomainFace; });
   if (extra.shape) addShape(make);
   if (extra.gray) addGray(make);
   if (extra.edgeWeights) make.add("edge_weight", 0, [](const G& g) { return g.edgeWeight; });
@@ -215,8 +223,8 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra) {
   using B = BondMeasures;
   ColumnMaker<B> make(bonds);
-  make.addCount("first", [](const B& b) { return b.first; });
-  make.addCount("second", [](const B& b) { return b.second; });
+  make.addLabel("first", [](const B& b) { return b.first; });
+  make.addLabel("second", [](const B& b) { return b.second; });
   make.addCount("faces", [](const B& b) { return b.faces; });
   make.add("area", 2, [](const B& b) { return b.area; });
   make.add("radius", 1, [](const B& b) { return b.equivalentRadius; });
@@ -249,7 +257,7 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
     make.addVector(
         "cut",
         [](const B& b) { return b.crossing ? Vec3d(b.crossing->inCut.data()) : Vec3d(kNone); },
-        Kind::count);
+        Kind::flag);
     make.addVector("current", [](const B& b) {
       return b.crossing ? Vec3d(b.crossing->current.data()) : Vec3d(kNone);
     });
@@ -259,9 +267,9 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
 
 std::vector<MeasureColumn> bridgeColumns(const std::vector<Bridge>& bridges) {
   ColumnMaker<Bridge> make(bridges);
-  make.addCount("first", [](const Bridge& b) { return b.first; });
-  make.addCount("second", [](const Bridge& b) { return b.second; });
-  make.addCount("bonded", [](const Bridge& b) { return b.bonded; });
+  make.addLabel("first", [](const Bridge& b) { return b.first; });
+  make.addLabel("second", [](const Bridge& b) { return b.second; });
+  make.addFlag("bonded", [](const Bridge& b) { return b.bonded; });
   make.addCount("voxels", [](const Bridge& b) { return b.voxels; });
   make.add("volume", 3, [](const Bridge& b) { return b.volume; });
   make.add("section_area", 2, [](const Bridge& b) { return b.section; });

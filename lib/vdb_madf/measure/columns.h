@@ -19,6 +19,8 @@ struct MeasureColumn {
   enum class Kind {
     number,
     count,  ///< whole numbers
+    label,  ///< whole numbers that name a grain
+    flag,   ///< 0 or 1; bools in Python
     place   ///< a coordinate of a place, along `axis`
   };
   std::string name;  ///< letters, digits, underscores; without the unit
@@ -26,6 +28,9 @@ struct MeasureColumn {
   int power = 0;               ///< of the length that it is measured in: 2 is an area; -2 to 3
   int axis = 0;                ///< 0, 1, 2: x, y, z; of places
   std::vector<double> values;  ///< a row each, in voxels (Measurements); NaN: not known
+
+  /// True if the values are whole numbers, without a unit.
+  bool isWhole() const { return kind != Kind::number && kind != Kind::place; }
 };
 
 /// `id`, `voxels`, `volume`, `equivalent_diameter`, `centroid_x`, `_y`, `_z`, `representative_x`,

@@ -31,7 +31,7 @@ std::vector<GrainNetwork::Column> inWorld(std::vector<MeasureColumn> columns,
       value = isBox ? value * world.edges[column.axis] : scaled(column, value, world.edges);
       if (isPlace) value += world.origin[column.axis];
     }
-    const bool isCount = !isPlace && column.kind == MeasureColumn::Kind::count;
+    const bool isCount = !isPlace && column.isWhole();
     result.push_back({std::move(column.name), std::move(column.values), isCount});
   }
   return result;

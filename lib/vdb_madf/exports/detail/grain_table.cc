@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 std::string measureText(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges) {
   const double value = column.values[row];
   if (std::isnan(value)) return "";
-  if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
+  if (column.isWhole()) return std::to_string(int64_t(value));
   const double number = scaled(column, value, edges);
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,

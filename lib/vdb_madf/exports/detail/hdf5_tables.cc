@@ -125,7 +125,7 @@ class TableWriter {
       std::vector<double> values = column.values;
       const bool areKnown = std::none_of(values.begin(), values.end(),
                                          [](double value) { return std::isnan(value); });
-      if (column.kind == MeasureColumn::Kind::count && areKnown) {
+      if (column.isWhole() && areKnown) {
         addIntegers(table, column.name, {values.size()}, {values.begin(), values.end()});
         continue;
       }

@@ -82,7 +82,7 @@ bool isKnownOfAll(const GrainTable& table, size_t column) {
 bool areUint32(const MeasureColumn& column) {
   for (const double value : column.values)
     if (!(value >= 0 && value <= std::numeric_limits<uint32_t>::max())) return false;
-  return column.kind == MeasureColumn::Kind::count;
+  return column.isWhole();
 }
 
 std::string segmentPropertiesText(const GrainTable& table) {

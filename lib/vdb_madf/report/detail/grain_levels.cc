@@ -73,7 +73,7 @@ class TablePacker {
   }
 
   void add(const MeasureColumn& column) {
-    const bool isExact = column.kind == MeasureColumn::Kind::count;
+    const bool isExact = column.isWhole();
     table_->columns.push_back({column.name, isExact});
     std::vector<uint64_t> exact;
     std::vector<uint32_t> rounded;
