@@ -161,6 +161,7 @@ TEST_CASE("cli: an empty object has no grains", "[cli]") {
     const Outcome nothing = bench.run(command + "--phase 9");
     CHECK(nothing.exitCode == 0);
     CHECK(nothing.out.find("nothing is selected") != std::string::npos);
+    CHECK(nothing.out.find("grain diameter") == std::string::npos);
     CHECK(nothing.err.find("vdb_madf: note: s.raw: nothing is selected") == 0);
     CHECK(bench.mustRun(command).find("nothing is selected") == std::string::npos);
   }

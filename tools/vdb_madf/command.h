@@ -19,15 +19,22 @@ struct Common {
   bool quiet = false;
   bool verbose = false;
   bool unverified = false;  ///< see setFilesAreVerified()
+  std::string maxMemory;    ///< see MemoryLimit::kept; empty: none
   Progress* progress = nullptr;
   Team* team = nullptr;  ///< of vdb_madf_mpi
 };
 
 using Action = std::function<void()>;
 
+/// Who sees that a verb takes no more than --max-memory.
+enum class MemoryLimit {
+  kept,    ///< the system, which refuses more while the verb works: limitMemory()
+  planned  ///< the verb, which refuses before it works, and has an option of its own
+};
+
 /// Adds a verb with the common options and an example under its help.
 Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
-             const std::string& example);
+             const std::string& example, MemoryLimit limit = MemoryLimit::kept);
 
 /// Leaves out what is printed where it would get into an output on standard output.
 Common besideOutput(Common common, const std::string& output);

@@ -13,18 +13,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <iostream>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "command.h"
 #include "command_line.h"
 #include "member_failure.h"
 #include "message.h"
 #include "outputs.h"
+#include "parse.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/simd_level.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/files/verified_files.h"
@@ -35,13 +40,17 @@
 namespace vdb_madf::tools {
 
 Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
-             const std::string& example) {
+             const std::string& example, MemoryLimit limit) {
   Verb verb = parent.verb(name, description);
   verb.option("--threads", common.threads, "number of threads (default: all)").range(1, 4096);
   verb.flag("-q,--quiet", common.quiet, "print nothing but errors");
   verb.flag("-v,--verbose", common.verbose, "print more");
   verb.flag("--no-verify", common.unverified,
             "read files whose content is not what their digest says");
+  if (limit == MemoryLimit::kept)
+    verb.option("--max-memory", common.maxMemory,
+                "end with an error rather than take more, such as 12GiB")
+        .typeName("SIZE");
   verb.footer("Example:\n  " + example);
   return verb;
 }
@@ -120,6 +129,31 @@ void askForLargePages() {
 #endif
 }
 
+/// Starts as many threads as TBB may, and ends them: TBB ends the process where it is refused one.
+/// @throw InvalidInput if the system refuses one
+void checkThreads() {
+  using Control = tbb::global_control;
+  const size_t others = Control::active_value(Control::max_allowed_parallelism) - 1;
+  std::vector<std::thread> started;
+  started.reserve(others);
+  std::mutex untilAllRun;
+  std::unique_lock<std::mutex> lock(untilAllRun);
+  bool isRefused = false;
+  try {
+    for (size_t i = 0; i < others; ++i)
+      started.emplace_back([&] { const std::lock_guard<std::mutex> wait(untilAllRun); });
+  } catch (const std::exception&) {  // system_error, or bad_alloc
+    isRefused = true;
+  }
+  lock.unlock();
+  for (std::thread& thread : started) thread.join();
+  if (isRefused)
+    throw InvalidInput(fmt::format(
+        "the system refuses a thread more than {}: allow more memory (--max-memory, ulimit -v) or "
+        "processes (ulimit -u), or use fewer (--threads)",
+        started.size() + 1));
+}
+
 /// The version of the command, and in lines below it what it was built with and runs with:
 /// OpenVDB's version, the instruction set, optional formats.
 std::string versionText() {
@@ -184,9 +218,18 @@ int run(const char* program, int argc, char** argv, Team* team) {
   std::optional<tbb::global_control> threads;
   if (common.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, size_t(common.threads));
+  if (!common.maxMemory.empty()) limitMemory(parseMemory(common.maxMemory));
+  checkThreads();
   initialize();
   setFilesAreVerified(!common.unverified);
-  action();
+  try {
+    action();
+  } catch (const std::bad_alloc&) {
+    if (common.maxMemory.empty()) throw;
+    throw InvalidInput(common.maxMemory +
+                       " of memory are not enough: allow more (--max-memory), crop or coarsen the "
+                       "volume, or give labels in slabs, of which measure takes one at a time");
+  }
   flushStandardOutput();
   return kDone;
 }

@@ -247,7 +247,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
 void addSegment(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<SegmentArguments>();
   Verb verb = addVerb(command, common, "segment", "cut the object into grains",
-                      exampleOfSegment(common.team));
+                      exampleOfSegment(common.team), MemoryLimit::planned);
   verb.option("IN", o->input.path, "any readable volume").required();
   verb.option("OUT", o->out,
               "gets the labels: .vdb (Int32 grid 'grain'), an image: .tif, .npy ..., or .slabs");

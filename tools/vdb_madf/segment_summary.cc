@@ -234,11 +234,13 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   if (summary.weights != VoxelWeights{})
     std::printf("  squared edges    taken as %s, to %.1g %%\n", summary.weights.toString().c_str(),
                 100 * summary.weightsError);
-  std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", sizes.d10, sizes.d50,
-              sizes.d90);
-  if (summary.voxelSize)
-    std::printf(" = %.4g, %.4g, %.4g um", um * sizes.d10, um * sizes.d50, um * sizes.d90);
-  std::printf(" (equal volume, by volume)\n");
+  if (counts.grains > 0) {
+    std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", sizes.d10, sizes.d50,
+                sizes.d90);
+    if (summary.voxelSize)
+      std::printf(" = %.4g, %.4g, %.4g um", um * sizes.d10, um * sizes.d50, um * sizes.d90);
+    std::printf(" (equal volume, by volume)\n");
+  }
   std::printf("  dust             %s under 100 voxels, %.3f %% of the object\n",
               counted(sizes.dustGrains, "grain").c_str(),
               100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));

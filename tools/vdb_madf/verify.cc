@@ -53,7 +53,7 @@ void addVerify(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<VerifyArguments>();
   Verb verb = addVerb(command, common, "verify",
                       "prove voxel by voxel that labels are what the definition says",
-                      "vdb_madf verify grains.vdb scan.tif --phase 1");
+                      "vdb_madf verify grains.vdb scan.tif --phase 1", MemoryLimit::planned);
   verb.option("LABELS", o->labels.path, "made by segment or remerge: .vdb or .slabs").required();
   verb.option("OBJECT", o->object.path, "what they were made of, read as segment reads it")
       .required();

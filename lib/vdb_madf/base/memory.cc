@@ -4,6 +4,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/detail/control_groups.h"
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,16 +25,28 @@ std::string textOf(const char* path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What this process may still map: its own limits (`ulimit -v`, `ulimit -d`) without what it has.
-int64_t freeInProcess() {
+/// What this process has mapped, bytes: all of it, and what it may write to.
+struct MappedMemory {
+  int64_t all = 0, data = 0;
+};
+
+MappedMemory mappedMemory() {
   std::ifstream file("/proc/self/statm");
   int64_t pages[6] = {};  // the first: all, the last: data and stack
   for (int64_t& number : pages) file >> number;
+  const int64_t page = ::sysconf(_SC_PAGESIZE);
+  return {pages[0] * page, pages[5] * page};
+}
+
+/// What this process may still map: its own limits (`ulimit -v`, `ulimit -d`) without what it has.
+int64_t freeInProcess() {
+  const MappedMemory mapped = mappedMemory();
   int64_t least = std::numeric_limits<int64_t>::max();
-  for (const auto& [resource, used] : {std::pair(RLIMIT_AS, pages[0]), {RLIMIT_DATA, pages[5]}}) {
+  for (const auto& [resource, used] :
+       {std::pair(RLIMIT_AS, mapped.all), {RLIMIT_DATA, mapped.data}}) {
     struct rlimit limit {};
     if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-      least = std::min(least, int64_t(limit.rlim_cur) - used * ::sysconf(_SC_PAGESIZE));
+      least = std::min(least, int64_t(limit.rlim_cur) - used);
   }
   return least;
 }
@@ -78,6 +91,18 @@ int64_t memoryLimit() {
       bytes = std::min(bytes, int64_t(limit.rlim_cur));
   }
   return bytes;
+}
+
+void limitMemory(int64_t bytes) {
+  constexpr int64_t kLittle = int64_t(16) << 20;
+  const int64_t used = mappedMemory().data;
+  if (bytes < used + kLittle)
+    throw InvalidInput(readableBytes(bytes) + " of memory are not enough: it takes " +
+                       readableBytes(used + kLittle) + " to begin with");
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, rlim_t(bytes));
+  ::setrlimit(RLIMIT_DATA, &limit);
 }
 
 std::string readableBytes(int64_t bytes) {

@@ -22,6 +22,12 @@ int64_t availableMemory();
 /// groups, or its own.
 int64_t memoryLimit();
 
+/// From now on this process is refused memory beyond these bytes: an allocation then throws
+/// std::bad_alloc. What it may write to counts, touched or not, so that a limit has to be above
+/// peakMemory(), by 40 % for some. By RLIMIT_DATA, which Linux keeps; other systems may not.
+/// @throw InvalidInput if the process has nearly as much already
+void limitMemory(int64_t bytes);
+
 /// How messages write a number of bytes: "154 MiB", with three digits; units are powers of 1024.
 std::string readableBytes(int64_t bytes);
 

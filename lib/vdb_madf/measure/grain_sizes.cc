@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace vdb_madf {
@@ -18,7 +19,7 @@ double diameterAtShare(const std::vector<int64_t>& sizes, int64_t all, double sh
     below += size;
     if (double(below) >= share * double(all)) return std::cbrt(6 * double(size) / M_PI);
   }
-  return 0;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace vdb_madf {
@@ -16,8 +17,8 @@ struct GrainSizes {
   int64_t dustGrains = 0;
   int64_t dustVoxels = 0;  ///< in them
   /// Diameters of the balls of the grains' volumes, voxels: grains up to this one hold at least 10,
-  /// 50 and 90 % of all voxels. 0 without grains.
-  double d10 = 0, d50 = 0, d90 = 0;
+  /// 50 and 90 % of all voxels. NaN without grains.
+  double d10 = std::numeric_limits<double>::quiet_NaN(), d50 = d10, d90 = d10;
 };
 
 /// @param grainVoxels voxels of each grain, in any order, as in Segmentation::grainVoxels
