@@ -303,6 +303,11 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
   CHECK_THAT(bench.run(segment + "--slab-height 8 --scratch out.slabs.part").err,
              Contains("another folder"));
   CHECK_THAT(bench.run(segment + "--slab-height 8 --scratch .").err, Contains("another folder"));
+  const std::string about = bench.bytes("out.slabs.scratch/about.vdb");
+  bench.write("out.slabs.scratch/about.vdb", about.substr(0, about.size() / 2));
+  CHECK_THAT(bench.run(segment + "--slab-height 8 --resume").err,
+             Contains("about.vdb: the scratch data is damaged"));
+  bench.write("out.slabs.scratch/about.vdb", about);
   bench.write("out.slabs.scratch/object-0.piece", "damaged");
   CHECK_THAT(bench.run(segment + "--slab-height 8 --resume").err, Contains("damaged"));
 }

@@ -82,7 +82,12 @@ MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPla
 MaskGrid::Ptr storedAbout(const WorkPlace& place) {
   VdbReadOptions any;
   any.anyVoxelShape = true;
-  return openvdb::gridPtrCast<MaskGrid>(readVdb(place.aboutFile(), any).at(0));
+  try {
+    return openvdb::gridPtrCast<MaskGrid>(readVdb(place.aboutFile(), any).at(0));
+  } catch (const IoError&) {
+    throw IoError(place.aboutFile() +
+                  ": the scratch data is damaged: remove its folder and begin anew");
+  }
 }
 
 }  // namespace
