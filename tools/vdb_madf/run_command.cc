@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -129,9 +130,11 @@ void askForLargePages() {
 #endif
 }
 
-/// Starts as many threads as TBB may, and ends them: TBB ends the process where it is refused one.
+/// Starts as many threads as TBB may, and ends them: TBB ends the process where it is refused one,
+/// or memory that it begins with.
 /// @throw InvalidInput if the system refuses one
 void checkThreads() {
+  constexpr size_t kThreadBytes = size_t(8) << 20, kOtherBytes = size_t(32) << 20;
   using Control = tbb::global_control;
   const size_t others = Control::active_value(Control::max_allowed_parallelism) - 1;
   std::vector<std::thread> started;
@@ -140,6 +143,8 @@ void checkThreads() {
   std::unique_lock<std::mutex> lock(untilAllRun);
   bool isRefused = false;
   try {
+    // The stacks of these threads stay with the process: those of TBB's are others.
+    const std::unique_ptr<char[]> untouched(new char[others * kThreadBytes + kOtherBytes]);
     for (size_t i = 0; i < others; ++i)
       started.emplace_back([&] { const std::lock_guard<std::mutex> wait(untilAllRun); });
   } catch (const std::exception&) {  // system_error, or bad_alloc
