@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -55,6 +56,54 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
   }
 }
 
+/// The contacts of a cluster, by the cluster on their other side, in no order. Most have a handful,
+/// for which a list takes a third of a map's memory; some have thousands.
+class Neighbors {
+ public:
+  size_t size() const { return items_.size(); }
+  auto begin() const { return items_.begin(); }
+  auto end() const { return items_.end(); }
+
+  /// @return the contact with the other cluster, and true if it is this one
+  std::pair<uint32_t, bool> emplace(uint32_t other, uint32_t contact) {
+    const size_t place = find(other);
+    if (place < size()) return {items_[place].second, false};
+    items_.emplace_back(other, contact);
+    if (places_) {
+      places_->emplace(other, uint32_t(place));
+    } else if (size() > kFew) {
+      places_ = std::make_unique<std::unordered_map<uint32_t, uint32_t>>();
+      for (size_t i = 0; i < size(); ++i) places_->emplace(items_[i].first, uint32_t(i));
+    }
+    return {contact, true};
+  }
+  /// Nothing if it is not there.
+  void erase(uint32_t other) {
+    const size_t place = find(other);
+    if (place == size()) return;
+    items_[place] = items_.back();
+    items_.pop_back();
+    if (!places_) return;
+    if (place < size()) (*places_)[items_[place].first] = uint32_t(place);
+    places_->erase(other);
+  }
+
+ private:
+  static constexpr size_t kFew = 32;
+
+  size_t find(uint32_t other) const {
+    if (places_) {
+      const auto known = places_->find(other);
+      return known == places_->end() ? size() : known->second;
+    }
+    const auto isIt = [&](const auto& item) { return item.first == other; };
+    return size_t(std::find_if(items_.begin(), items_.end(), isIt) - items_.begin());
+  }
+
+  std::vector<std::pair<uint32_t, uint32_t>> items_;
+  std::unique_ptr<std::unordered_map<uint32_t, uint32_t>> places_;  // in items_, if they are many
+};
+
 /// Joins the pair of largest score, again and again.
 ///
 /// Each pair waits in the heap of its b, under the score less b's volume term; b takes a turn with
@@ -69,6 +118,7 @@ class Joining {
  public:
   Joining(const ManifoldGraph& graph, Hierarchy& hierarchy)
       : score_(graph.weights, graph.flatAxis), hierarchy_(hierarchy) {
+    clusters_.reserve(hierarchy.classes.size());
     for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) {
       const Hierarchy::Class& one = hierarchy.classes[c];
       const int64_t voxels = addVoxels(one.voxels, one.cavityVoxels);
@@ -136,9 +186,9 @@ class Joining {
     detail::ScoredClass size;
     uint32_t name = 0;  ///< the class of its representative
     uint32_t version = 0;
-    std::unordered_map<uint32_t, uint32_t> contactWith = {};  ///< by cluster
-    std::vector<Waiting> pairs = {};                          ///< a heap: those of which it is b
-    std::vector<Larger> larger = {};                          ///< a heap: those of which it is a
+    Neighbors contactWith = {};
+    std::vector<Waiting> pairs = {};  ///< a heap: those of which it is b
+    std::vector<Larger> larger = {};  ///< a heap: those of which it is a
   };
   struct Pair {
     uint32_t a = 0, b = 0;
@@ -165,7 +215,7 @@ class Joining {
       clusters_[two].contactWith.emplace(one, next);
       contacts_.push_back({one, two, edge.saddleHeight, 0});
     }
-    widen(contacts_[known->second], edge.contactFaces, edge.saddleHeight);
+    widen(contacts_[known], edge.contactFaces, edge.saddleHeight);
   }
 
   static void widen(Contact& contact, int64_t faces, int32_t height) {
@@ -271,9 +321,9 @@ class Joining {
       clusters_[other].contactWith.emplace(kept, contact);
     } else {
       ++moved.version;
-      widen(contacts_[known->second], moved.faces, moved.height);
+      widen(contacts_[known], moved.faces, moved.height);
     }
-    return known->second;
+    return known;
   }
 
   JoinScore score_;

@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-using Leaf = Int32Tree::LeafNodeType;
+using LabelLeaf = Int32Tree::LeafNodeType;
 
 /// Where a neighbor's voxels go along one axis: [from, from + count) of it to `to` of the block.
 struct Span {
@@ -23,10 +23,10 @@ constexpr Span kSpans[3] = {{7, 1, -1}, {0, 8, 0}, {0, 1, 8}};
 
 /// Blocks whose corners the leaf's voxels touch: its own, and those beyond its upper faces that
 /// hold a label.
-void addOrigins(const Leaf& leaf, std::vector<Coord>& origins) {
+void addOrigins(const LabelLeaf& leaf, std::vector<Coord>& origins) {
   const int32_t* values = leaf.buffer().data();
   bool used[8] = {};
-  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+  for (openvdb::Index i = 0; i < LabelLeaf::SIZE; ++i) {
     if (!labelAt(leaf, values, i)) continue;
     const int upper = ((i >> 6) == 7) * 4 + ((i >> 3 & 7) == 7) * 2 + ((i & 7) == 7);
     for (int side = 0; side < 8; ++side)
@@ -40,7 +40,7 @@ void addOrigins(const Leaf& leaf, std::vector<Coord>& origins) {
 
 /// The labels of `count` voxels of a leaf along z.
 template <int count>
-void readRow(const Leaf& leaf, openvdb::Index offset, int32_t* to) {
+void readRow(const LabelLeaf& leaf, openvdb::Index offset, int32_t* to) {
   const int32_t* values = leaf.buffer().data() + offset;
   const auto active =
       uint32_t(leaf.getValueMask().getWord<uint64_t>(offset >> 6) >> (offset & 63) & 0xff);
@@ -64,7 +64,7 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
   for (int side = 0; side < 27; ++side) {
     const int dx = side / 9, dy = side / 3 % 3, dz = side % 3;
     const Coord from = origin.offsetBy(8 * dx - 8, 8 * dy - 8, 8 * dz - 8);
-    const Leaf* leaf = accessor.probeConstLeaf(from);
+    const LabelLeaf* leaf = accessor.probeConstLeaf(from);
     int32_t tile = 0;
     if (!leaf && (!accessor.probeValue(from, tile) || tile < 0)) tile = 0;
     const Span x = kSpans[dx], y = kSpans[dy], z = kSpans[dz];
@@ -83,7 +83,7 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
 }
 
 LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
-  for (const Leaf* leaf : leavesOf(*tree_)) addOrigins(*leaf, origins_);
+  for (const LabelLeaf* leaf : leavesOf(*tree_)) addOrigins(*leaf, origins_);
   sortUnique(origins_);
   for (const auto& [label, voxels] : labelSizes(labels)) {
     labels_.push_back(label);

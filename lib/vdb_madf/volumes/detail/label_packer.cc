@@ -14,14 +14,15 @@ namespace vdb_madf::detail {
 
 namespace {
 
-using Leaf = Int32Tree::LeafNodeType;
+using LabelLeaf = Int32Tree::LeafNodeType;
 
 /// The leaf at `origin`; null if it holds no label.
-std::unique_ptr<Leaf> makeLeaf(const int32_t* labels, const CoordBBox& slab, const Coord& origin) {
+std::unique_ptr<LabelLeaf> makeLeaf(const int32_t* labels, const CoordBBox& slab,
+                                    const Coord& origin) {
   CoordBBox box = CoordBBox::createCube(origin, kLeafSide);
   box.intersect(slab);
   const Coord size = slab.dim();
-  std::unique_ptr<Leaf> leaf;
+  std::unique_ptr<LabelLeaf> leaf;
   for (int z = box.min().z(); z <= box.max().z(); ++z) {
     for (int y = box.min().y(); y <= box.max().y(); ++y) {
       const size_t row = size_t(z - slab.min().z()) * size_t(size.y()) + size_t(y - slab.min().y());
@@ -29,8 +30,8 @@ std::unique_ptr<Leaf> makeLeaf(const int32_t* labels, const CoordBBox& slab, con
           labels + row * size_t(size.x()) + size_t(box.min().x() - slab.min().x());
       for (int x = box.min().x(); x <= box.max().x(); ++x, ++label) {
         if (*label == 0) continue;
-        if (!leaf) leaf = std::make_unique<Leaf>(origin, 0, false);
-        leaf->setValueOn(Leaf::coordToOffset(Coord(x, y, z)), *label);
+        if (!leaf) leaf = std::make_unique<LabelLeaf>(origin, 0, false);
+        leaf->setValueOn(LabelLeaf::coordToOffset(Coord(x, y, z)), *label);
       }
     }
   }
@@ -39,7 +40,7 @@ std::unique_ptr<Leaf> makeLeaf(const int32_t* labels, const CoordBBox& slab, con
 
 void addLeaves(const int32_t* labels, const CoordBBox& slab, Int32Tree& tree) {
   const Coord first = slab.min() & ~(kLeafSide - 1);
-  std::vector<std::vector<std::unique_ptr<Leaf>>> rows(
+  std::vector<std::vector<std::unique_ptr<LabelLeaf>>> rows(
       size_t((slab.max().y() >> 3) - (slab.min().y() >> 3)) + 1);
   parallelForEach(rows.size(), 1, nullptr, [&](size_t row) {
     for (int x = first.x(); x <= slab.max().x(); x += kLeafSide)
