@@ -144,9 +144,12 @@ void checkThreads() {
   bool isRefused = false;
   try {
     // The stacks of these threads stay with the process: those of TBB's are others.
-    const std::unique_ptr<char[]> untouched(new char[others * kThreadBytes + kOtherBytes]);
-    for (size_t i = 0; i < others; ++i)
+    std::vector<std::unique_ptr<char[]>> untouched(others);
+    const std::unique_ptr<char[]> other(new char[kOtherBytes]);
+    for (size_t i = 0; i < others; ++i) {
+      untouched[i].reset(new char[kThreadBytes]);
       started.emplace_back([&] { const std::lock_guard<std::mutex> wait(untilAllRun); });
+    }
   } catch (const std::exception&) {  // system_error, or bad_alloc
     isRefused = true;
   }
