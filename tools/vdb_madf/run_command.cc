@@ -137,6 +137,7 @@ void checkThreads() {
   constexpr size_t kThreadBytes = size_t(8) << 20, kOtherBytes = size_t(32) << 20;
   using Control = tbb::global_control;
   const size_t others = Control::active_value(Control::max_allowed_parallelism) - 1;
+  if (others == 0) return;
   std::vector<std::thread> started;
   started.reserve(others);
   std::mutex untilAllRun;
