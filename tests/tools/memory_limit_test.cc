@@ -58,6 +58,8 @@ TEST_CASE("cli: --max-memory ends a verb before it takes more, and leaves what w
   const Bench bench;
   bench.mustRun("generate pack p.vdb --size 128 --radius 8:16");
   bench.mustRun("segment p.vdb g.vdb --voxel-size 10um");
+  const std::string version = bench.mustRun("--version");
+  const auto lacks = [&](const char* part) { return version.find(part) == std::string::npos; };
   for (const auto& [command, output] :
        std::vector<std::pair<std::string, std::string>>{{"measure g.vdb ", "o.h5"},
                                                         {"export g.vdb ", "o.stl"},
@@ -69,6 +71,8 @@ TEST_CASE("cli: --max-memory ends a verb before it takes more, and leaves what w
                                                         {"edit g.vdb --join-below 50 ", "o.vdb"},
                                                         {"convert g.vdb ", "o.tif"}}) {
     CAPTURE(command, output);
+    if (output == "o.h5" && lacks("HDF5 is read and written")) continue;
+    if (output == "o.html" && lacks("Reports are written")) continue;
     bench.mustRun(command + output + " -q");
     const std::string bytes = bench.bytes(output);
     int refused = 0;

@@ -18,6 +18,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
+#include "vdb_madf/slabs/folder_scratch.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -85,8 +86,7 @@ MaskGrid::Ptr storedAbout(const WorkPlace& place) {
   try {
     return openvdb::gridPtrCast<MaskGrid>(readVdb(place.aboutFile(), any).at(0));
   } catch (const IoError&) {
-    throw IoError(place.aboutFile() +
-                  ": the scratch data is damaged: remove its folder and begin anew");
+    failDamagedScratch(place.aboutFile());
   }
 }
 

@@ -86,11 +86,11 @@ class Timer {
   Clock::time_point start_ = Clock::now();
 };
 
-[[noreturn]] void failDamaged(const std::string& path) {
+}  // namespace
+
+void failDamagedScratch(const std::string& path) {
   throw IoError(path + ": the scratch data is damaged: remove its folder and begin anew");
 }
-
-}  // namespace
 
 FolderScratch::FolderScratch(const std::string& path) : path_(pathOf(path)), isShared_(true) {
   if (!has(kWork))
@@ -177,21 +177,21 @@ void FolderScratch::readBytes(const std::string& name, const Allocate& allocate)
   const detail::InputFile in(path);
   Header header;
   if (in.readSome(0, &header, sizeof header) != sizeof header || header.magic != Header().magic)
-    failDamaged(path);
+    failDamagedScratch(path);
   // LZ4 cannot make less than a 255th of what it gets.
-  if (header.size / 256 > in.size()) failDamaged(path);
+  if (header.size / 256 > in.size()) failDamagedScratch(path);
   std::vector<Block> table(blockCount(header.size));
   const size_t tableBytes = table.size() * sizeof(Block);
   if (in.readSome(sizeof header, table.data(), tableBytes) != tableBytes ||
       detail::checksumOf(reinterpret_cast<const char*>(table.data()), tableBytes) !=
           header.checksum)
-    failDamaged(path);
+    failDamagedScratch(path);
   std::vector<uint64_t> place{sizeof header + tableBytes};
   for (const Block& block : table) {
-    if (block.size > kBlock + BLOSC_MAX_OVERHEAD) failDamaged(path);
+    if (block.size > kBlock + BLOSC_MAX_OVERHEAD) failDamagedScratch(path);
     place.push_back(place.back() + block.size);
   }
-  if (place.back() != in.size()) failDamaged(path);
+  if (place.back() != in.size()) failDamagedScratch(path);
   char* const bytes = allocate(header.size);
   forEachBlock(header.size, [&](size_t i) {
     Bytes stored(table[i].size);
@@ -201,7 +201,7 @@ void FolderScratch::readBytes(const std::string& name, const Allocate& allocate)
     if (detail::checksumOf(stored.data(), stored.size()) != table[i].checksum ||
         blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
         blosc_decompress_ctx(stored.data(), bytes + i * kBlock, size, 1) != int(size))
-      failDamaged(path);
+      failDamagedScratch(path);
   });
 }
 

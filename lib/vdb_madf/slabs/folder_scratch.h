@@ -63,4 +63,7 @@ class FolderScratch final : public Scratch {
   std::unique_ptr<detail::FolderLock> lock_;
 };
 
+/// @param path a piece, or another file there. @throw IoError that says so, and what to do
+[[noreturn]] void failDamagedScratch(const std::string& path);
+
 }  // namespace vdb_madf
