@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/detail/join_score.h"
 #include "vdb_madf/method/detail/merge_classes.h"
@@ -63,6 +65,7 @@ class Neighbors {
   size_t size() const { return items_.size(); }
   auto begin() const { return items_.begin(); }
   auto end() const { return items_.end(); }
+  void reserve(size_t count) { items_.reserve(count); }
 
   /// @return the contact with the other cluster, and true if it is this one
   std::pair<uint32_t, bool> emplace(uint32_t other, uint32_t contact) {
@@ -107,17 +110,21 @@ class Neighbors {
 /// Joins the pair of largest score, again and again.
 ///
 /// Each pair waits in the heap of its b, under the score less b's volume term; b takes a turn with
-/// its first pair. When a or b has grown, but has its m, s and name still, what was computed of its
-/// pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
-/// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
-/// look at all others each time, but only at those that it has outgrown (`larger`).
+/// its first pair, unless none of its pairs can reach the lowest score. When a or b has grown, but
+/// has its m, s and name still, what was computed of its pairs is a bound, for it can only have
+/// become smaller (JoinScore): that of the first one is computed anew when it is its turn. So a
+/// class that joins thousands of small neighbors does not look at all others each time, but only at
+/// those that it has outgrown (`larger`).
 ///
 /// Wherever there is a score 1 <= h < m: an edge with 0 < h that had not h < m of both its classes
 /// has joined them before (addClasses), and m only grows.
 class Joining {
  public:
   Joining(const ManifoldGraph& graph, Hierarchy& hierarchy)
-      : score_(graph.weights, graph.flatAxis), hierarchy_(hierarchy) {
+      : score_(graph.weights, graph.flatAxis),
+        lowest_(unitsOf(hierarchy.lowest)),
+        hierarchy_(hierarchy) {
+    addContacts(graph.edges);
     clusters_.reserve(hierarchy.classes.size());
     for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) {
       const Hierarchy::Class& one = hierarchy.classes[c];
@@ -128,19 +135,17 @@ class Joining {
       int32_t& sure = clusters_[hierarchy.classOfNode[i]].size.sure;
       sure = std::max(sure, graph.nodes[i].squaredRadius - graph.nodes[i].doubt);
     }
-    for (const ManifoldGraph::Edge& edge : graph.edges) addContact(edge);
-    for (uint32_t c = 0; c < contacts_.size(); ++c) score(c);
-    for (uint32_t c = 0; c < clusters_.size(); ++c) takeTurn(c);
+    linkContacts();
+    scoreAll();
   }
 
-  void run(int32_t lowest) {
+  void run() {
     while (!turns_.empty()) {
       const Waiting turn = turns_.front();
       Cluster& b = clusters_[turn.of];
       if (turn.version == b.version) {
-        if (turn.score < lowest) return;
         const Waiting first = b.pairs.front();
-        const bool isNew = contacts_[first.of].version == first.version;
+        const bool isNew = !isOld(first);
         const Pair pair = isNew ? pairOf(first.of) : Pair();
         if (isNew && first.score == restOfScore(pair, first.of)) {
           pop(turns_);
@@ -149,7 +154,7 @@ class Joining {
         }
         pop(b.pairs);
         pop(turns_);
-        if (isNew) score(first.of);
+        if (isNew) score(first.of, turn.of);
         takeTurn(turn.of);
       } else {
         pop(turns_);
@@ -158,6 +163,8 @@ class Joining {
   }
 
  private:
+  static constexpr size_t kContactsPerChunk = 1 << 14;
+
   /// What waits for its score to be the largest: a pair of clusters, named by its contact, or a
   /// cluster with its first pair. It is out of date if that has another version by now.
   struct Waiting {
@@ -172,8 +179,9 @@ class Joining {
   struct Contact {
     uint32_t one, two;  ///< clusters
     int32_t height;
-    int64_t faces;  ///< up to JoinScore::kMaxFaces
+    uint32_t faces;  ///< up to JoinScore::kMaxFaces
     uint32_t version = 0;
+    bool operator<(const Contact& o) const { return std::tie(one, two) < std::tie(o.one, o.two); }
   };
   /// A pair whose score may gain once its a has as many voxels as its b.
   struct Larger {
@@ -205,23 +213,44 @@ class Joining {
     heap.pop_back();
   }
 
-  void addContact(const ManifoldGraph::Edge& edge) {
-    const uint32_t one = hierarchy_.classOfNode[edge.first],
-                   two = hierarchy_.classOfNode[edge.second];
-    if (one == two) return;
-    const auto next = uint32_t(contacts_.size());
-    const auto [known, isNew] = clusters_[one].contactWith.emplace(two, next);
-    if (isNew) {
-      clusters_[two].contactWith.emplace(one, next);
-      contacts_.push_back({one, two, edge.saddleHeight, 0});
-    }
-    widen(contacts_[known], edge.contactFaces, edge.saddleHeight);
+  void addContacts(const std::vector<ManifoldGraph::Edge>& edges) {
+    const std::vector<uint32_t>& classOf = hierarchy_.classOfNode;
+    contacts_ = detail::parallelCollect<Contact>(
+        edges.size(), kContactsPerChunk, nullptr, [&](size_t i, std::vector<Contact>& some) {
+          const ManifoldGraph::Edge& edge = edges[i];
+          const auto [one, two] = std::minmax(classOf[edge.first], classOf[edge.second]);
+          if (one != two) some.push_back({one, two, edge.saddleHeight, facesOf(edge)});
+        });
+    detail::parallelSort(contacts_.begin(), contacts_.end(), std::less<>());
+    size_t count = 0;
+    for (const Contact& contact : contacts_)
+      if (count > 0 && !(contacts_[count - 1] < contact))
+        widen(contacts_[count - 1], contact);
+      else
+        contacts_[count++] = contact;
+    contacts_.resize(count);
   }
 
-  static void widen(Contact& contact, int64_t faces, int32_t height) {
-    contact.faces += std::clamp<int64_t>(faces, 0, JoinScore::kMaxFaces);
-    contact.faces = std::min(contact.faces, JoinScore::kMaxFaces);
-    contact.height = std::max(contact.height, height);
+  void linkContacts() {
+    std::vector<uint32_t> count(clusters_.size(), 0);
+    for (const Contact& contact : contacts_) {
+      ++count[contact.one];
+      ++count[contact.two];
+    }
+    for (uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].contactWith.reserve(count[c]);
+    for (uint32_t c = 0; c < contacts_.size(); ++c) {
+      clusters_[contacts_[c].one].contactWith.emplace(contacts_[c].two, c);
+      clusters_[contacts_[c].two].contactWith.emplace(contacts_[c].one, c);
+    }
+  }
+
+  static uint32_t facesOf(const ManifoldGraph::Edge& edge) {
+    return uint32_t(std::clamp<int64_t>(edge.contactFaces, 0, JoinScore::kMaxFaces));
+  }
+
+  static void widen(Contact& contact, const Contact& more) {
+    contact.faces = uint32_t(std::min(int64_t(contact.faces) + more.faces, JoinScore::kMaxFaces));
+    contact.height = std::max(contact.height, more.height);
   }
 
   Pair pairOf(uint32_t contact) const {
@@ -241,30 +270,49 @@ class Joining {
     return score_(a.size, b.size, c.faces, c.height) - volumeTerm(b);
   }
 
+  void scoreAll() {
+    std::vector<int32_t> rest(contacts_.size());
+    detail::parallelForEach(rest.size(), kContactsPerChunk, nullptr, [&](size_t c) {
+      if (contacts_[c].height > 0) rest[c] = restOfScore(pairOf(uint32_t(c)), uint32_t(c));
+    });
+    for (uint32_t c = 0; c < rest.size(); ++c)
+      if (contacts_[c].height > 0) wait(c, pairOf(c), rest[c]);
+    for (uint32_t c = 0; c < clusters_.size(); ++c) takeTurn(c);
+  }
+
   Waiting waiting(int32_t score, uint32_t contact) const {
     const Contact& c = contacts_[contact];
     const auto [first, second] = std::minmax(clusters_[c.one].name, clusters_[c.two].name);
     return {score, first, second, contact, c.version};
   }
 
-  /// Lets the pair of a contact wait anew, if it has a score.
-  void score(uint32_t contact) {
-    ++contacts_[contact].version;
-    if (contacts_[contact].height <= 0) return;
-    const Pair pair = pairOf(contact);
-    push(clusters_[pair.b].pairs, waiting(restOfScore(pair, contact), contact));
+  void wait(uint32_t contact, const Pair& pair, int32_t restOfScore) {
+    push(clusters_[pair.b].pairs, waiting(restOfScore, contact));
     const detail::ScoredClass &a = clusters_[pair.a].size, &b = clusters_[pair.b].size;
     if (a.top == b.top || (b.sure < b.top && b.voxels > a.voxels))
       push(clusters_[pair.a].larger, {b.voxels, contact, contacts_[contact].version});
-    if (clusters_[pair.b].pairs.front().of == contact) takeTurn(pair.b);
   }
+
+  /// Lets the pair of a contact wait anew, if it has a score.
+  /// @param takesTurn a cluster that takes its turn afterwards, and none here
+  void score(uint32_t contact, uint32_t takesTurn) {
+    ++contacts_[contact].version;
+    if (contacts_[contact].height <= 0) return;
+    const Pair pair = pairOf(contact);
+    wait(contact, pair, restOfScore(pair, contact));
+    if (pair.b != takesTurn && clusters_[pair.b].pairs.front().of == contact) takeTurn(pair.b);
+  }
+
+  bool isOld(const Waiting& pair) const { return contacts_[pair.of].version != pair.version; }
 
   void takeTurn(uint32_t cluster) {
     Cluster& b = clusters_[cluster];
     ++b.version;
+    while (!b.pairs.empty() && isOld(b.pairs.front())) pop(b.pairs);
     if (b.pairs.empty()) return;
     Waiting turn = b.pairs.front();
     turn.score += volumeTerm(b);
+    if (turn.score < lowest_) return;
     turn.of = cluster;
     turn.version = b.version;
     push(turns_, turn);
@@ -307,7 +355,7 @@ class Joining {
         if (contacts_[kept.larger.front().of].version == kept.larger.front().version)
           changed.push_back(kept.larger.front().of);
     }
-    for (const uint32_t c : changed) score(c);
+    for (const uint32_t c : changed) score(c, keptIndex);
     takeTurn(keptIndex);
   }
 
@@ -321,12 +369,13 @@ class Joining {
       clusters_[other].contactWith.emplace(kept, contact);
     } else {
       ++moved.version;
-      widen(contacts_[known], moved.faces, moved.height);
+      widen(contacts_[known], moved);
     }
     return known;
   }
 
   JoinScore score_;
+  int32_t lowest_;
   Hierarchy& hierarchy_;
   std::vector<Cluster> clusters_;
   std::vector<Contact> contacts_;
@@ -341,7 +390,7 @@ Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest) {
   Hierarchy hierarchy;
   hierarchy.lowest = lowest;
   addClasses(graph, hierarchy);
-  Joining(graph, hierarchy).run(unitsOf(lowest));
+  Joining(graph, hierarchy).run();
   return hierarchy;
 }
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/detail/merge_classes.h"
 #include "vdb_madf/method/detail/merge_rule.h"
@@ -20,6 +22,8 @@ namespace {
 
 using Edge = ManifoldGraph::Edge;
 
+constexpr size_t kEdgesPerChunk = 1 << 16;
+
 void mergeByAngle(const ManifoldGraph& graph, const detail::MergeRule& rule,
                   detail::DisjointSets& grains) {
   for (const Edge& edge : graph.edges)
@@ -29,20 +33,25 @@ void mergeByAngle(const ManifoldGraph& graph, const detail::MergeRule& rule,
 
 void mergeByNeck(const ManifoldGraph& graph, const detail::MergeRule& rule,
                  detail::DisjointSets& grains) {
+  constexpr int32_t kHighest = std::numeric_limits<int32_t>::max();
   std::vector<int32_t> top(graph.nodes.size(), 0);  // largest D of a class, at its root
-  for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
-    int32_t& t = top[grains.find(i)];
-    t = std::max(t, graph.nodes[i].squaredRadius);
+  std::vector<uint32_t> root(graph.nodes.size());
+  for (uint32_t i = 0; i < root.size(); ++i) {
+    root[i] = grains.find(i);
+    top[root[i]] = std::max(top[root[i]], graph.nodes[i].squaredRadius);
   }
-  std::vector<uint32_t> order;
-  for (uint32_t i = 0; i < graph.edges.size(); ++i)
-    if (rule.seesNeck(graph.edges[i].saddleHeight)) order.push_back(i);
-  // Edges are sorted by their pair, and nodes lexicographically: a stable sort settles ties.
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return graph.edges[a].saddleHeight > graph.edges[b].saddleHeight;
-  });
-  for (const uint32_t i : order) {
-    const Edge& edge = graph.edges[i];
+  // By height from the largest on, then as edges are sorted: by their pair. Tops grow, so what does
+  // not merge the classes as they are now never will.
+  std::vector<uint64_t> order = detail::parallelCollect<uint64_t>(
+      graph.edges.size(), kEdgesPerChunk, nullptr, [&](size_t i, std::vector<uint64_t>& some) {
+        const Edge& edge = graph.edges[i];
+        const int32_t smaller = std::min(top[root[edge.first]], top[root[edge.second]]);
+        if (rule.seesNeck(edge.saddleHeight) && rule.mergesByNeck(edge.saddleHeight, smaller))
+          some.push_back(uint64_t(kHighest - edge.saddleHeight) << 32 | i);
+      });
+  detail::parallelSort(order.begin(), order.end());
+  for (const uint64_t next : order) {
+    const Edge& edge = graph.edges[uint32_t(next)];
     const uint32_t a = grains.find(edge.first), b = grains.find(edge.second);
     if (a == b || !rule.mergesByNeck(edge.saddleHeight, std::min(top[a], top[b]))) continue;
     const int32_t merged = std::max(top[a], top[b]);

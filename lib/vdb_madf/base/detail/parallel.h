@@ -6,8 +6,10 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "vdb_madf/base/interrupter.h"
 
@@ -55,6 +57,27 @@ void parallelForEach(size_t count, size_t grain, Interrupter* interrupter, const
   parallelFor(count, grain, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) f(i);
   });
+}
+
+/// What f(i, some) adds to `some` for each i of [0, count), in the order of i; items are found in
+/// parallel. For the interrupter see parallelFor().
+template <typename Item, typename F>
+std::vector<Item> parallelCollect(size_t count, size_t grain, Interrupter* interrupter,
+                                  const F& f) {
+  std::vector<std::vector<Item>> chunks((count + grain - 1) / grain);
+  parallelForEach(chunks.size(), 1, interrupter, [&](size_t chunk) {
+    const size_t end = std::min(count, (chunk + 1) * grain);
+    for (size_t i = chunk * grain; i < end; ++i) f(i, chunks[chunk]);
+  });
+  size_t found = 0;
+  for (const std::vector<Item>& chunk : chunks) found += chunk.size();
+  std::vector<Item> all;
+  all.reserve(found);
+  for (std::vector<Item>& chunk : chunks) {
+    all.insert(all.end(), chunk.begin(), chunk.end());
+    chunk = {};
+  }
+  return all;
 }
 
 }  // namespace vdb_madf::detail
