@@ -260,6 +260,22 @@ TEST_CASE("hierarchy: a class with many neighbors does not look at all of them e
                     [](const Hierarchy::Join& join) { return join.first == 0; }));
 }
 
+TEST_CASE("hierarchy: of a graph that is given away it is the same", "[hierarchy]") {
+  Rng rng(5);
+  for (int i = 0; i < 50; ++i) {
+    ManifoldGraph graph = randomGraph(rng);
+    const Hierarchy kept = mergeHierarchy(graph, 4);
+    const Hierarchy given = mergeHierarchy(std::move(graph), 4);
+    CHECK(given.classOfNode == kept.classOfNode);
+    REQUIRE(given.joins.size() == kept.joins.size());
+    for (size_t j = 0; j < kept.joins.size(); ++j) {
+      CHECK(given.joins[j].first == kept.joins[j].first);
+      CHECK(given.joins[j].second == kept.joins[j].second);
+      CHECK(given.joins[j].score == kept.joins[j].score);
+    }
+  }
+}
+
 TEST_CASE("hierarchy: a strictness is rounded to the nearest unit", "[hierarchy]") {
   ManifoldGraph graph = nodesOnAxis({{100, 4000}, {100, 4000}});
   graph.edges = {{0, 1, 300, 99, true}};

@@ -34,8 +34,13 @@ int64_t addVoxels(int64_t some, int64_t more) {
   return std::min(some + std::clamp<int64_t>(more, 0, most), most);
 }
 
-/// Nodes are in lexicographic order, so the first of the largest is the representative.
-void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
+/// The classes to begin with. Nodes are in lexicographic order, so the first of the largest is the
+/// representative.
+Hierarchy unjoined(const ManifoldGraph& graph, double lowest) {
+  if (!(std::abs(lowest) <= kMaxStrictness))
+    throw InvalidInput("the lowest strictness must lie between -200000 and 200000");
+  Hierarchy hierarchy;
+  hierarchy.lowest = lowest;
   MergeOptions maxima;
   maxima.mode = MergeMode::score;
   const std::vector<uint32_t> root = detail::mergedClasses(graph, maxima);
@@ -43,6 +48,9 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
   std::vector<uint32_t> best(root);
   for (uint32_t i = 0; i < count; ++i)
     if (graph.nodes[i].squaredRadius > graph.nodes[best[root[i]]].squaredRadius) best[root[i]] = i;
+  size_t classes = 0;
+  for (uint32_t i = 0; i < count; ++i) classes += best[root[i]] == i;
+  hierarchy.classes.reserve(classes);
   std::vector<uint32_t> classOfRoot(count);
   for (uint32_t i = 0; i < count; ++i) {
     if (best[root[i]] != i) continue;
@@ -56,6 +64,7 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
     all.voxels = addVoxels(all.voxels, graph.nodes[i].voxels);
     all.cavityVoxels = addVoxels(all.cavityVoxels, graph.nodes[i].cavityVoxels);
   }
+  return hierarchy;
 }
 
 /// The contacts of a cluster, by the cluster on their other side, in no order. Most have a handful,
@@ -117,7 +126,7 @@ class Neighbors {
 /// those that it has outgrown (`larger`).
 ///
 /// Wherever there is a score 1 <= h < m: an edge with 0 < h that had not h < m of both its classes
-/// has joined them before (addClasses), and m only grows.
+/// has joined them before (unjoined), and m only grows.
 class Joining {
  public:
   Joining(const ManifoldGraph& graph, Hierarchy& hierarchy)
@@ -135,11 +144,11 @@ class Joining {
       int32_t& sure = clusters_[hierarchy.classOfNode[i]].size.sure;
       sure = std::max(sure, graph.nodes[i].squaredRadius - graph.nodes[i].doubt);
     }
-    linkContacts();
-    scoreAll();
   }
 
   void run() {
+    linkContacts();
+    scoreAll();
     while (!turns_.empty()) {
       const Waiting turn = turns_.front();
       Cluster& b = clusters_[turn.of];
@@ -275,6 +284,10 @@ class Joining {
     detail::parallelForEach(rest.size(), kContactsPerChunk, nullptr, [&](size_t c) {
       if (contacts_[c].height > 0) rest[c] = restOfScore(pairOf(uint32_t(c)), uint32_t(c));
     });
+    std::vector<uint32_t> count(clusters_.size(), 0);
+    for (uint32_t c = 0; c < rest.size(); ++c)
+      if (contacts_[c].height > 0) ++count[pairOf(c).b];
+    for (uint32_t c = 0; c < clusters_.size(); ++c) clusters_[c].pairs.reserve(count[c]);
     for (uint32_t c = 0; c < rest.size(); ++c)
       if (contacts_[c].height > 0) wait(c, pairOf(c), rest[c]);
     for (uint32_t c = 0; c < clusters_.size(); ++c) takeTurn(c);
@@ -385,12 +398,16 @@ class Joining {
 }  // namespace
 
 Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest) {
-  if (!(std::abs(lowest) <= kMaxStrictness))
-    throw InvalidInput("the lowest strictness must lie between -200000 and 200000");
-  Hierarchy hierarchy;
-  hierarchy.lowest = lowest;
-  addClasses(graph, hierarchy);
+  Hierarchy hierarchy = unjoined(graph, lowest);
   Joining(graph, hierarchy).run();
+  return hierarchy;
+}
+
+Hierarchy mergeHierarchy(ManifoldGraph&& graph, double lowest) {
+  Hierarchy hierarchy = unjoined(graph, lowest);
+  Joining joining(graph, hierarchy);
+  graph = {};
+  joining.run();
   return hierarchy;
 }
 

@@ -76,6 +76,9 @@ struct Hierarchy {
 ///   all that has a score
 /// @throw InvalidInput unless lowest is in [-kMaxStrictness, kMaxStrictness].
 Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest = -kMaxStrictness);
+/// Joins the manifolds of a graph that nobody needs afterwards: its memory is given back before the
+/// joins.
+Hierarchy mergeHierarchy(ManifoldGraph&& graph, double lowest = -kMaxStrictness);
 
 /// A join, told of the grains that it makes one.
 struct JoinedGrains {

@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/method/join_small.h"
 #include "vdb_madf/slabs/cuts/class_graph.h"
 #include "vdb_madf/slabs/cuts/merge_parts.h"
@@ -106,8 +107,10 @@ class MergeTree {
     return domain ? domain->flatAxis() : std::nullopt;
   }
 
-  Merging grainsOfClasses(const ManifoldGraph& classes) const {
+  Merging grainsOfClasses(ManifoldGraph classes) const {
     const MergeOptions& how = work_.options.merge;
+    if (how.mode == MergeMode::score && how.minGrain == 0)  // as merge(), in less memory
+      return cut(mergeHierarchy(std::move(classes), how.strictness), how.strictness);
     if (how.mode == MergeMode::score) return merge(classes, how);
     std::vector<uint32_t> apart(classes.nodes.size());
     std::iota(apart.begin(), apart.end(), 0u);
