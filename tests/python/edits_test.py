@@ -45,6 +45,8 @@ def test_edits_equal_numpy(seg):
     labels, array = seg.labels, np.asarray(seg.labels)
     assert np.array_equal(labels.merge([(2, 1), [4, 3]]),
                           np.where(array == 1, 2, np.where(array == 3, 4, array)))
+    with pytest.raises(ValueError, match="99 is no grain of these labels"):
+        labels.drop([2, 99])
     kept = labels.drop([2, 5])
     _, order = np.unique(np.asarray(kept), return_inverse=True)
     assert np.array_equal(kept.relabel(), order.reshape(array.shape))

@@ -45,6 +45,15 @@ def test_layers(labels):
     assert "scale" not in of_bonds and of_bonds["edge_width"] > 0
 
 
+def test_reduced_labels_and_bonds_lie_on_each_other():
+    array = np.zeros((40, 40, 40), np.int32)
+    array[4:16, 8:24, 4:20], array[4:16, 8:24, 20:36] = 1, 2
+    reduced = madf.Labels(array, voxel_size="2um").reduce(4)
+    (_, of_grains, _), (bonds, _, _) = madf.to_napari(reduced)
+    assert of_grains["translate"] == pytest.approx((0.003, 0.003, 0.003))
+    assert bonds[0, 0] == pytest.approx(np.multiply(0.002, (9.5, 15.5, 11.5)))
+
+
 def test_measured_and_empty(labels):
     measured = madf.measure(labels, shape=True)
     (_, arguments, _), _ = madf.to_napari(labels, measured, name="sample")

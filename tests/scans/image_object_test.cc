@@ -277,6 +277,37 @@ TEST_CASE("image_object: says how it was made, and only then", "[image_object]")
   CHECK(storedDomain(*object) == imageBox(kSize));
 }
 
+TEST_CASE("image_object: counts what is no number, wherever it lies in the domain",
+          "[image_object]") {
+  const ImageSize size{6, 5, 4};
+  const float nan = std::nanf("");
+  std::vector<float> samples;
+  for (int i = 0; i < 120; ++i) samples.push_back(float(i) / 7);
+  for (const int i : {0, 1, 30, 119}) samples[size_t(i)] = nan;  // (0,0,0), (1,0,0), (0,0,1), last
+  samples[50] = INFINITY;
+  const auto open = [&] { return imageOf(size, samples); };
+  const auto nansBy = [&](const Selection& selection, const GrayOptions& gray = {}) {
+    return imageObject(open, selection, gray).nans;
+  };
+  GrayOptions low, smooth;
+  low.low = 3;
+  smooth.smooth = 0.5;
+  CHECK(nansBy(Selection::threshold(5)) == 4);
+  CHECK(nansBy(Selection::threshold(5), low) == 4);
+  CHECK(nansBy(Selection::threshold(5), smooth) == 4);
+  CHECK(nansBy(Selection::range(1, 5)) == 4);
+  const Domain slice(CoordBBox(Coord(0, 0, 1), Coord(5, 4, 2)));
+  CHECK(imageObject(open, Selection::threshold(5), {}, ScanPart{slice.box(), slice}).nans == 1);
+}
+
+TEST_CASE("image_object: smoothed values are no phases", "[image_object]") {
+  GrayOptions smooth;
+  smooth.smooth = 1;
+  const std::vector<uint8_t> samples{0, 1, 2, 1};
+  CHECK_THROWS_WITH(objectOf<uint8_t>({2, 2, 1}, samples, Selection::phase(1), smooth),
+                    Contains("a Gaussian leaves no voxel the value of a phase"));
+}
+
 TEST_CASE("image_object: a threshold that is not there is not made up", "[image_object]") {
   GrayOptions gray;
   gray.automatic = AutomaticThreshold::otsu;

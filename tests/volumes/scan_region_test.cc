@@ -25,13 +25,14 @@ namespace {
 const CoordBBox kScanBox(Coord(0), Coord(40, 36, 20));
 
 /// Values of a gray scan with a round field of view: outside 9, inside 100 to 119, or 200 to 219.
-std::vector<uint8_t> roundScan(double radius, uint8_t outside = 9) {
+std::vector<uint8_t> roundScan(double radius, uint8_t outside = 9, double centerX = 20,
+                               double centerY = 18) {
   std::mt19937 random(1);
   std::vector<uint8_t> samples;
   for (int z = 0; z <= kScanBox.max().z(); ++z)
     for (int y = 0; y <= kScanBox.max().y(); ++y)
       for (int x = 0; x <= kScanBox.max().x(); ++x) {
-        const double dx = x - 20, dy = y - 18;
+        const double dx = x - centerX, dy = y - centerY;
         const auto value = uint8_t(100 + random() % 20 + 100 * (random() % 3 == 0));
         samples.push_back(dx * dx + dy * dy <= radius * radius ? value : outside);
       }
@@ -119,7 +120,8 @@ TEST_CASE("scan_region: the cylinder is fitted to what is not 0 or a value aroun
     const Loaded loaded = load(folder / "a.npy", options);
     REQUIRE(loaded.object);
     CHECK(storedDomain(*loaded.object) == cylinderIn(kScanBox, {2, {20, 18}, 15}));
-    CHECK_THAT(loaded.notes, Contains("along z around x 20, y 18, to which a radius of 15 voxels"));
+    CHECK_THAT(loaded.notes,
+               Contains("along z around x 20, y 18, which with a radius of 15 voxels"));
     // Of a VDB, the object.
     const MaskGrid::Ptr all = loadObject(folder / "a.npy", above(100));
     writeVdb(folder / "a.vdb", {toBoolGrid(*all)});
@@ -143,6 +145,43 @@ TEST_CASE("scan_region: the cylinder is fitted to what is not 0 or a value aroun
   writeScan(folder / "b.npy", std::vector<uint8_t>(kScanBox.volume(), 7));
   options.region.cylinder = CylinderOptions{};
   CHECK_THAT(load(folder / "b.npy", options).error, Contains("field of view"));
+}
+
+TEST_CASE("scan_region: the center of a gray scan's field of view is fitted, too",
+          "[scan_region]") {
+  const ScratchFolder folder;
+  const std::vector<uint8_t> samples = roundScan(14, 0, 17.3, 19.6);
+  writeScan(folder / "a.npy", samples);
+  VolumeOptions options = above(200);
+  options.region.cylinder = CylinderOptions{};
+  const Loaded loaded = load(folder / "a.npy", options);
+  REQUIRE(loaded.object);
+  const auto domain = storedDomain(*loaded.object);
+  int64_t scanned = 0, inside = 0;
+  size_t i = 0;
+  for (int z = 0; z <= kScanBox.max().z(); ++z)
+    for (int y = 0; y <= kScanBox.max().y(); ++y)
+      for (int x = 0; x <= kScanBox.max().x(); ++x) {
+        const bool isScanned = samples[i++] != 0;
+        scanned += isScanned;
+        inside += isScanned && domain->isInside(Coord(x, y, z));
+      }
+  CHECK(inside == scanned);
+  CHECK(int64_t(domain->voxelCount()) == scanned);
+  CHECK_THAT(loaded.notes, Contains("voxels were fitted"));
+  // Of a mask nothing tells the field of view from pores, so the middle of the box counts.
+  std::vector<uint8_t> mask;
+  for (const uint8_t value : samples) mask.push_back(value >= 200);
+  writeScan(folder / "b.npy", mask);
+  VolumeOptions ofMask;
+  ofMask.region = options.region;
+  CHECK_THAT(load(folder / "b.npy", ofMask).notes, Contains("around x 20, y 18, to which"));
+  // Of a scan that was cut on one side the circle goes on behind it.
+  writeScan(folder / "c.npy", roundScan(16, 0, 12, 18));
+  const auto cut = storedDomain(*load(folder / "c.npy", options).object);
+  CHECK(cut->box().min().x() == 0);
+  CHECK(cut->isInside(Coord(0, 18, 0)));
+  CHECK(!cut->isInside(Coord(0, 3, 0)));
 }
 
 TEST_CASE("scan_region: thresholds see the region alone", "[scan_region]") {

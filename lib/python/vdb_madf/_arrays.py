@@ -47,6 +47,14 @@ def readable(source: Any) -> Union[str, _core.ArraySource]:
     return os.fspath(source) if isinstance(source, (str, os.PathLike)) else _array_source(source)
 
 
+def refuse_parts(source: Any, **parts: Optional[str]) -> None:
+    """ValueError for the name of a part of a file where there is no file."""
+    for name, part in parts.items():
+        if part is not None and not isinstance(source, (str, os.PathLike)):
+            what = "there is none" if source is None else "this is an array"
+            raise ValueError(f"{name}: names a part of a file, and {what}: leave it out")
+
+
 def dense(array: Any) -> npt.NDArray[Any]:
     """A number, or all of an array as [z, y, x]."""
     order = _axes(array)

@@ -35,7 +35,8 @@ class Cylinder:
         refuse_wrong_types(Cylinder, vars(self))
 
 
-def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.Index]:
+def _bounds(box: Box, name: str, open_ended: bool,
+            of_array: bool) -> Tuple[_core.Index, _core.Index]:
     first, last = [], []
     for part in box:
         if part.step not in (None, 1):
@@ -43,9 +44,9 @@ def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.I
         if not open_ended and (part.start is None or part.stop is None):
             raise ValueError(f"{name}: {part} has no start or stop")
         ends = (part.start, part.stop)
-        if None in ends and any(end is not None and end < 0 for end in ends):
+        if any(end is not None and end < 0 for end in ends) and (of_array or None in ends):
             raise ValueError(f"{name}: {part}: places are counted from the first voxel, not from "
-                             "the end: give both")
+                             "the end")
         start = -_FAR if part.start is None else int(part.start)
         stop = _FAR if part.stop is None else int(part.stop)
         if stop <= start:
@@ -88,7 +89,7 @@ def volume_options(
     threshold: Union[float, str, Tuple[float, float], None],
     range: Optional[Tuple[float, float]], invert: bool, median: int, smooth: float, despeckle: int,
     voxel_size: Optional[_core.Edges], roi: Any, crop: Optional[Box], domain: Optional[Box],
-    dataset: Optional[str], grid: Optional[str],
+    dataset: Optional[str], grid: Optional[str], of_array: bool,
 ) -> _core.VolumeOptions:
     """The options as the library wants them."""
     if sum(choice is not None for choice in (phase, threshold, range)) > 1:
@@ -121,9 +122,9 @@ def volume_options(
     if roi is not None:
         _set_region(options, roi, mask_type)
     if crop is not None:
-        options.set_crop(_bounds(crop, "crop", True))
+        options.set_crop(_bounds(crop, "crop", True, of_array))
     if domain is not None:
-        options.set_domain(_bounds(domain, "domain", False))
+        options.set_domain(_bounds(domain, "domain", False, False))
     options.dataset = dataset or ""
     options.grid = grid or ""
     return options

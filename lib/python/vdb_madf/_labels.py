@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import Source, readable
+from ._arrays import Source, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded
 from ._mesh import Mesh
@@ -39,6 +39,7 @@ class Labels(Volume):
         if isinstance(source, Labels):
             self._grid = same_grid(source, voxel_size)
             return
+        refuse_parts(source, dataset=dataset, grid=grid)
         options = _core.VolumeOptions()
         edges = edges_of(source, voxel_size)
         if edges is not None:
@@ -124,7 +125,10 @@ class Labels(Volume):
 
     @checked
     def drop(self, ids: _Ids) -> "Labels":
-        """All other grains; their labels stay."""
+        """All other grains; their labels stay. ValueError for an id that no grain has."""
+        unknown = np.setdiff1d(np.asarray(ids), self.ids)
+        if len(unknown):
+            raise ValueError(f"{unknown[0]} is no grain of these labels")
         return self.keep(np.setdiff1d(self.ids, np.asarray(ids)))
 
     @checked
@@ -164,7 +168,8 @@ class Labels(Volume):
     @checked
     def reduce(self, factor: int) -> "Labels":
         """The volume smaller by a whole factor: each voxel has the most frequent label of its
-        own."""
+        own. `origin` is where the center of its first voxel lies: meshes, networks and napari's
+        layers are there, places in tables count from that center."""
         return Labels._of(_core.reduce(self._grid, factor, _core.Call(None, 0)))
 
     def colors(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8]]:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import ArrayLike3D, Source, readable
+from ._arrays import ArrayLike3D, Source, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._choices import Box, Cylinder, volume_options
 from ._volume import Volume, edges_of, same_grid
@@ -57,9 +57,11 @@ class Mask(Volume):
             mask_type=Mask, phase=phase, threshold=threshold, range=range, invert=invert,
             median=median, smooth=smooth, despeckle=despeckle,
             voxel_size=edges_of(source, voxel_size), roi=roi, crop=crop, domain=domain,
-            dataset=dataset, grid=grid)
+            dataset=dataset, grid=grid, of_array=not isinstance(source, (str, os.PathLike)))
+        refuse_parts(source, dataset=dataset, grid=grid)
         with calling(progress, threads) as call:
-            if phase is None and threshold is None and range is None and _is_bool(source):
+            chosen = (phase, threshold, range)
+            if all(choice is None for choice in chosen) and not smooth and _is_bool(source):
                 options.select_phases([1.0])
             self._grid, notes = _core.load_mask(readable(source), options, call)
         if isinstance(source, Volume) and (any(source.first) or "madf_region" in source.metadata):

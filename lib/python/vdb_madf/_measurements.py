@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import Source, readable
+from ._arrays import Source, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
@@ -193,6 +193,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
         raise _core.InvalidInput("binder is a value in the map of phases: give it, too")
     if stability and not isinstance(labels, Segmentation):
         raise _core.InvalidInput("stability: give the Segmentation itself, which has the manifolds")
+    refuse_parts(intensity, intensity_grid=intensity_grid)
+    refuse_parts(gray, gray_grid=gray_grid)
+    refuse_parts(phases, phases_grid=phases_grid)
     with calling(progress, threads) as call:
         measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset,
                              grid=grid)

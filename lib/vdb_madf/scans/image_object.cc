@@ -19,6 +19,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/detail/histogram_builder.h"
+#include "vdb_madf/scans/detail/nan_count.h"
 #include "vdb_madf/scans/detail/scan_part.h"
 #include "vdb_madf/scans/filtered_image.h"
 #include "vdb_madf/scans/histogram.h"
@@ -150,11 +151,7 @@ double automaticThreshold(ImageReader& image, AutomaticThreshold method, const P
 
 /// An image of which the middle rows tell the kind, at little cost.
 detail::CountedImage sampled(ImageReader& image, const Part& part) {
-  const int width = image.info().size.x, middle = image.info().size.y / 2;
-  const auto rows = [=](int y, int) {
-    return y == middle ? std::vector{std::pair(0, width)} : std::vector<std::pair<int, int>>{};
-  };
-  return {image, rows, !part};
+  return {image, detail::middleRows(image.info().size), !part};
 }
 
 std::optional<double> cornerOfGray(const Histogram& histogram, int slices) {
@@ -244,6 +241,10 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
                         const std::optional<Selection>& selection, const GrayOptions& gray,
                         const std::optional<ScanPart>& part, Interrupter* interrupter,
                         const TakeLayer& take) {
+  if (gray.smooth > 0 && selection && selection->kind == Selection::Kind::phase)
+    throw InvalidInput(open()->path() +
+                       ": a Gaussian leaves no voxel the value of a phase: write the phase as a "
+                       "volume of its own first, or choose by a threshold");
   const auto image = [&] { return filteredImage(open(), gray); };
   const bool automatic = gray.automatic != AutomaticThreshold::none;
   Selection chosen = selection.value_or(Selection{});
@@ -257,21 +258,24 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
   const bool needsWhole = gray.low || gray.despeckle > 1;
   const TakeLayer takeRead = needsWhole ? nullptr : take;
   const std::unique_ptr<ImageReader> opened = image();
+  const auto rowsIn = [&](const Domain& domain) {
+    return detail::rowsOf({CoordBBox::inf(), domain}, opened->info().size);
+  };
+  detail::NanCount read(*opened, part ? rowsIn(part->domain) : nullptr);
   ImageObject object;
   if (!gray.low && chosen.kind == Selection::Kind::nonZero) {
-    object = plainMask(*opened, chosen, part, &reading, takeRead);
+    object = plainMask(read, chosen, part, &reading, takeRead);
   } else {
-    detail::CountedImage counted = sampled(*opened, part);
+    detail::CountedImage counted = sampled(read, part);
     if (gray.low) {
       object = hysteresisMask(counted, *gray.low, chosen, part, &reading);
     } else {
-      const PartMasks read = readPart(counted, {chosen}, part, &reading, takeRead);
-      object = {read.masks[0], read.leftOut};
+      const PartMasks found = readPart(counted, {chosen}, part, &reading, takeRead);
+      object = {found.masks[0], found.leftOut};
     }
-    const Histogram histogram = counted.histogram();
-    object.corner = cornerOfGray(histogram, opened->info().size.z);
-    if (!part) object.notFinite = histogram.notFinite;
+    object.corner = cornerOfGray(counted.histogram(), opened->info().size.z);
   }
+  object.nans = read.voxels();
   if (readsGray(gray) || (chosen.kind == Selection::Kind::threshold && chosen.invert))
     describeObject(chosen, gray, *object.mask);
   if (chosen.kind == Selection::Kind::threshold)

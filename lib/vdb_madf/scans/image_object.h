@@ -60,8 +60,7 @@ struct ImageObject {
   /// The one value at the four corners of all slices of a gray image, as around a round field of
   /// view: of kCornerSlices and more that were read without a part.
   std::optional<double> corner = std::nullopt;
-  /// Voxels, of an image that is read without a part, whose values are no finite numbers.
-  int64_t notFinite = 0;
+  int64_t nans = 0;  ///< voxels of the domain whose values are no numbers; none is object
 };
 
 /// In fewer slices all corners may well have one value by chance.

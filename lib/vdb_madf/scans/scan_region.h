@@ -24,7 +24,9 @@ struct Cylinder {
 /// is fitted to the field of view: the least one, rounded up to hundredths, that holds all voxels
 /// of other values than 0, but at most the largest that lies in the box. (Of an image whose eight
 /// corners have one value, all voxels of other values than that; NaN never counts. Of a VDB grid,
-/// the object that it has without a selection.)
+/// the object that it has without a selection.) Where neither is said of a gray image, the center
+/// is fitted, too, to hundredths: that of the smallest circle which holds the field of view, unless
+/// it is larger than any in the box.
 struct CylinderOptions {
   int axis = 2;
   std::optional<std::array<double, 2>> center;

@@ -129,11 +129,13 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                      ", as around a round field of view, and count as scanned: say that the scan "
                      "is a cylinder, if it is one",
                  NoteAbout::cylinder);
-  if (found.notFinite > 0 && options.note)
-    options.note(path + ": has " + counted(found.notFinite, "voxel") +
-                     " without a finite number, taken for scanned background: if they are around a "
-                     "round field of view, say that the scan is a cylinder",
-                 NoteAbout::cylinder);
+  if (found.nans > 0 && options.note) {
+    std::string text = path + ": has " + counted(found.nans, "voxel") +
+                       " without a number (NaN), taken for scanned background";
+    if (!part)
+      text += ": if they are around a round field of view, say that the scan is a cylinder";
+    options.note(text, part ? NoteAbout::file : NoteAbout::cylinder);
+  }
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
   if (options.domain && !part) setDomain(*found.mask, *options.domain);
   return found.mask;

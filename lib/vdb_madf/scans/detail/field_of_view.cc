@@ -4,7 +4,9 @@
 #include "vdb_madf/scans/detail/field_of_view.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -18,34 +20,44 @@ namespace {
 
 constexpr size_t kRowsOfView = 16;
 
-/// Of the voxels whose value differs from the first one's, and of those that are not 0: which of
-/// the two are the field of view is known when the last corner was seen.
-struct Farthest {
-  double notFirst = -1, notZero = -1;
+/// The first and the last of a line of voxels.
+struct Ends {
+  int first = std::numeric_limits<int>::max(), last = -1;
+  void add(int low, int high) {
+    first = std::min(first, low);
+    last = std::max(last, high);
+  }
+};
 
-  /// Of a row the first and the last such voxel count: in between the distance is smaller.
+/// The ends of rows, of each y along z, else of each z: of the voxels whose value differs from the
+/// first one's, and of those that are not 0. Which of the two are the field of view is known when
+/// the last corner was seen.
+struct Rims {
+  std::vector<Ends> notFirst, notZero;
+
+  /// Between the first and the last such voxel of a row none is farther away.
   template <typename T>
-  static double ofRow(const T* row, int length, T outside, Coord p, const CylinderAxis& axis) {
+  static Ends ofRow(const T* row, int length, T outside) {
     const auto isSeen = [&](int x) { return row[x] == row[x] && row[x] != outside; };
+    Ends ends;
     int first = 0, last = length - 1;
     while (first < length && !isSeen(first)) ++first;
-    if (first == length) return -1;
+    if (first == length) return ends;
     while (!isSeen(last)) --last;
-    p.x() = first;
-    const double atFirst = axis.squaredDistance(p);
-    p.x() = last;
-    return std::max(atFirst, axis.squaredDistance(p));
+    ends.add(first, last);
+    return ends;
   }
 };
 
 template <typename T>
-double farthestSample(ImageReader& image, const CylinderAxis& axis, Interrupter* interrupter) {
+std::vector<PlanePoint> rimOf(ImageReader& image, int axis, Interrupter* interrupter) {
   const ImageSize size = image.info().size;
   const auto nx = size_t(size.x), ny = size_t(size.y);
+  const auto lines = size_t(axis == 2 ? size.y : size.z);
   std::vector<T> samples(nx * ny * size_t(std::min(kSlab, size.z)));
   std::optional<T> first;
   bool sameCorners = true;
-  PerThread<Farthest> partial;
+  PerThread<Rims> partial;
   forEachSlab(0, size.z, interrupter, [&](int z, int count) {
     image.read(z, count, samples.data());
     if (!first) first = samples[0];
@@ -57,29 +69,44 @@ double farthestSample(ImageReader& image, const CylinderAxis& axis, Interrupter*
             slice[corner] == *first || (*first != *first && slice[corner] != slice[corner]);
     }
     parallelFor(ny * size_t(count), kRowsOfView, nullptr, [&](size_t begin, size_t end) {
-      Farthest& farthest = partial.local();
+      Rims& rims = partial.local();
+      rims.notFirst.resize(lines);
+      rims.notZero.resize(lines);
       for (size_t row = begin; row < end; ++row) {
-        const Coord p(0, int(row % ny), z + int(row / ny));
+        const size_t y = row % ny, line = axis == 2 ? y : size_t(z) + row / ny;
         const T* const values = &samples[row * nx];
-        farthest.notFirst =
-            std::max(farthest.notFirst, Farthest::ofRow(values, size.x, *first, p, axis));
-        farthest.notZero =
-            std::max(farthest.notZero, Farthest::ofRow(values, size.x, T(0), p, axis));
+        for (auto& [ends, outside] :
+             {std::pair(&rims.notFirst[line], *first), std::pair(&rims.notZero[line], T(0))}) {
+          const Ends found = Rims::ofRow(values, size.x, outside);
+          if (found.last >= 0 && axis == 0) ends->add(int(y), int(y));
+          if (found.last >= 0 && axis != 0) ends->add(found.first, found.last);
+        }
       }
     });
   });
-  double result = -1;
-  for (const Farthest& farthest : partial)
-    result = std::max(result, sameCorners ? farthest.notFirst : farthest.notZero);
-  return result;
+  std::vector<PlanePoint> rim;
+  for (const Rims& rims : partial) {
+    const std::vector<Ends>& all = sameCorners ? rims.notFirst : rims.notZero;
+    for (size_t line = 0; line < all.size(); ++line)
+      if (all[line].last >= 0)
+        for (const int end : {all[line].first, all[line].last})
+          rim.push_back({{double(end), double(line)}});
+  }
+  return rim;
 }
 
 }  // namespace
 
-double farthestFromAxis(ImageReader& image, const CylinderAxis& axis, Interrupter* interrupter) {
+std::vector<PlanePoint> rimOfView(ImageReader& image, int axis, Interrupter* interrupter) {
   return withSampleType(image.info().type, [&](auto sample) {
-    return farthestSample<decltype(sample)>(image, axis, interrupter);
+    return rimOf<decltype(sample)>(image, axis, interrupter);
   });
+}
+
+double farthestFromAxis(const std::vector<PlanePoint>& rim, const CylinderAxis& axis) {
+  double result = -1;
+  for (const PlanePoint& p : rim) result = std::max(result, Circle{axis.center}.squaredDistance(p));
+  return result;
 }
 
 double farthestFromAxis(const MaskTree& tree, const CylinderAxis& axis) {

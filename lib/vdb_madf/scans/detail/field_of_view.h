@@ -3,15 +3,22 @@
 
 #pragma once
 
+#include <vector>
+
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
+#include "vdb_madf/scans/detail/enclosing_circle.h"
 
 namespace vdb_madf::detail {
 
-/// The squared distance from the axis of the farthest voxel of a field of view: of an image those
-/// that are not 0, or not what all its eight corners are (NaN never is one), of a tree the active
-/// ones. Below 0 if there is none.
-double farthestFromAxis(ImageReader& image, const CylinderAxis& axis, Interrupter* interrupter);
+/// Points across an axis (in the order of CylinderAxis::u(), v()) that hold all others of a field
+/// of view between them: the voxels of an image that are not 0, or not what all its eight corners
+/// are (NaN never is one). None if it has no such voxel.
+std::vector<PlanePoint> rimOfView(ImageReader& image, int axis, Interrupter* interrupter);
+
+/// The squared distance from the axis of the farthest one; below 0 if there is none.
+double farthestFromAxis(const std::vector<PlanePoint>& rim, const CylinderAxis& axis);
+/// The squared distance from the axis of the farthest active voxel of a tree.
 double farthestFromAxis(const MaskTree& tree, const CylinderAxis& axis);
 
 }  // namespace vdb_madf::detail

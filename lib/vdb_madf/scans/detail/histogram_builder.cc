@@ -186,6 +186,12 @@ Histogram HistogramBuilder::result(SampleType type) const {
   return histogram;
 }
 
+RowParts middleRows(const ImageSize& size) {
+  return [width = size.x, middle = size.y / 2](int y, int) {
+    return y == middle ? std::vector{std::pair(0, width)} : std::vector<std::pair<int, int>>{};
+  };
+}
+
 CountedImage::CountedImage(ImageReader& image, RowParts parts, bool corners)
     : image_(image), parts_(std::move(parts)), looksAtCorners_(corners) {
   info_ = image.info();

@@ -56,6 +56,9 @@ class HistogramBuilder {
 /// The parts of a row of an image that count, [begin, end) along x.
 using RowParts = std::function<std::vector<std::pair<int, int>>(int y, int z)>;
 
+/// The row in the middle of each slice.
+RowParts middleRows(const ImageSize& size);
+
 /// Reads another image and counts what it reads.
 class CountedImage : public ImageReader {
  public:

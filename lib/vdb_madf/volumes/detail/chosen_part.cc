@@ -28,6 +28,8 @@ struct ScanExtent {
   CoordBBox box;  ///< where the domain is unknown: of its voxels
   /// As farthestFromAxis().
   std::function<double(const CylinderAxis&)> farthestFromAxis;
+  /// Of a gray scan: the smallest circle across an axis that holds its field of view.
+  std::function<std::optional<Circle>(int axis)> circle = [](int) { return std::nullopt; };
 };
 
 constexpr char kAxes[] = "xyz";
@@ -73,9 +75,10 @@ Domain maskRegion(const std::string& path, const VolumeOptions& options,
   return Domain(mask->tree());
 }
 
+constexpr double kDigits = 100;  // so that it can be typed
+
 double fittedRadius(const std::string& path, const CoordBBox& box, const CylinderAxis& axis,
                     const ScanExtent& extent) {
-  constexpr double kDigits = 100;  // so that it can be typed
   const double most = largestRadius(box, axis.axis, axis.center);
   if (most <= 0)
     throw InvalidInput(path +
@@ -89,6 +92,19 @@ double fittedRadius(const std::string& path, const CoordBBox& box, const Cylinde
   return std::min(std::ceil(std::sqrt(squared) * kDigits) / kDigits, most);
 }
 
+/// The least cylinder that holds the field of view of a gray scan. None if it would not fit in the
+/// box anywhere: then its rim is not to be seen.
+std::optional<Cylinder> fittedCylinder(const CoordBBox& box, const CylinderAxis& middle,
+                                       const ScanExtent& extent) {
+  const auto circle = extent.circle(middle.axis);
+  if (!circle) return std::nullopt;
+  CylinderAxis axis = middle;
+  for (size_t i = 0; i < 2; ++i) axis.center[i] = std::round(circle->center[i] * kDigits) / kDigits;
+  const double radius = std::ceil(std::sqrt(extent.farthestFromAxis(axis)) * kDigits) / kDigits;
+  if (radius > largestRadius(box, axis.axis, middle.center)) return std::nullopt;
+  return Cylinder{axis.axis, axis.center, radius};
+}
+
 Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, const CoordBBox& box,
                        const ScanExtent& extent) {
   const CylinderOptions& given = *options.region.cylinder;
@@ -96,15 +112,18 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   const openvdb::Vec3d middle = box.getCenter();
   axis.center = given.center.value_or(std::array<double, 2>{middle[axis.u()], middle[axis.v()]});
   if (given.radius) return {axis.axis, axis.center, *given.radius};
-  const double radius = fittedRadius(path, box, axis, extent);
+  const auto fitted = given.center ? std::nullopt : fittedCylinder(box, axis, extent);
+  const Cylinder cylinder =
+      fitted.value_or(Cylinder{axis.axis, axis.center, fittedRadius(path, box, axis, extent)});
   if (options.note)
     options.note(
-        fmt::format("{}: the region is a cylinder along {} around {} {}, {} {}, to which a "
-                    "radius of {} voxels was fitted",
-                    path, kAxes[axis.axis], kAxes[axis.u()], shortestDecimal(axis.center[0]),
-                    kAxes[axis.v()], shortestDecimal(axis.center[1]), shortestDecimal(radius)),
+        fmt::format("{}: the region is a cylinder along {} around {} {}, {} {}, {} {} voxels {}",
+                    path, kAxes[axis.axis], kAxes[axis.u()], shortestDecimal(cylinder.center[0]),
+                    kAxes[axis.v()], shortestDecimal(cylinder.center[1]),
+                    fitted ? "which with a radius of" : "to which a radius of",
+                    shortestDecimal(cylinder.radius), fitted ? "were fitted" : "was fitted"),
         NoteAbout::file);
-  return {axis.axis, axis.center, radius};
+  return cylinder;
 }
 
 ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const ScanExtent& extent,
@@ -153,9 +172,23 @@ std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions
   if (!options.region.any()) return std::nullopt;
   const auto image = open();
   const CoordBBox box = imageBox(image->info().size);
-  ScanExtent extent{Domain(options.domain.value_or(box)), box, [&](const CylinderAxis& axis) {
-                      return farthestFromAxis(*image, axis, interrupter);
-                    }};
+  CountedImage counted(*image, middleRows(image->info().size), false);
+  std::optional<std::vector<PlanePoint>> rim;  // of the one axis that is asked for
+  const auto rimAlong = [&](int axis) -> const std::vector<PlanePoint>& {
+    if (!rim) rim = rimOfView(counted, axis, interrupter);
+    return *rim;
+  };
+  ScanExtent extent;
+  extent.domain = Domain(options.domain.value_or(box));
+  extent.box = box;
+  extent.farthestFromAxis = [&](const CylinderAxis& axis) {
+    return farthestFromAxis(rimAlong(axis.axis), axis);
+  };
+  extent.circle = [&](int axis) -> std::optional<Circle> {
+    const std::vector<PlanePoint>& points = rimAlong(axis);
+    if (points.empty() || kindOf(counted.histogram()) != ImageKind::gray) return std::nullopt;
+    return smallestCircle(points);
+  };
   return chosenPart(image->path(), options, extent, interrupter);
 }
 
