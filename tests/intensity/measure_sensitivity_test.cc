@@ -161,6 +161,9 @@ TEST_CASE("measure_sensitivity: refuses labels that do not tell how they were ma
   sample.labels->removeMeta(kThresholdKey);
   CHECK_THROWS_WITH(sample.recurring(options), Contains("the threshold of a scan"));
   sample.labels = labels->deepCopy();
+  sample.labels->insertMeta("madf_edits", openvdb::StringMetadata("drop 1"));
+  CHECK_THROWS_WITH(sample.recurring(options), Contains("these were edited"));
+  sample.labels = labels->deepCopy();
   setDomain(*sample.labels, CoordBBox(Coord(0), Coord(55, 27, 28)));
   CHECK_THROWS_AS(sample.recurring(options), InvalidInput);
 }

@@ -272,6 +272,12 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.ply --select 0", 2, "grains have the numbers 1 and more");
   refusal("g.vdb x.ply --select 3,,4", 2, "select");
   refusal("g.vdb x.ply --select 123456", 1, "123456");
+  refusal("g.vdb x.inp --reduce 2", 2, "--reduce is for --as mesh, viz, lod, zarr, not hexa");
+  refusal("g.vdb x.vtu --max-dim 9", 2, "--max-dim is for");
+  refusal("g.vdb x.vti --smooth 3", 2, "--smooth is for");
+  refusal("g.vdb x.csv --as network --apart", 2, "--apart is for --as clumps, not network");
+  refusal("g.vdb x.ply --min-faces 3", 2, "--min-faces is for");
+  refusal("g.vdb x.zarr --triangles 99", 2, "give --meshes, too");
   refusal("g.vdb x.vdb --as viz --select 1", 2, "--as mesh");
   refusal("g.vdb c.csv --as clumps --uncovered nan", 2, "uncovered");
   refusal("g.vdb c.csv --as clumps --uncovered 1.1", 2, "uncovered");

@@ -3,6 +3,7 @@
 
 #include "export.h"
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -117,6 +118,40 @@ void checkTables(const ExportArguments& o, const ExportKind& kind) {
   }
 }
 
+/// @throw WrongUsage for options that this kind has no use for
+void checkOptions(const ExportArguments& o, const std::string& kind) {
+  const ExportArguments usual;
+  const bool reduces = o.reduce > 0 || o.maxDim > 0;
+  const struct {
+    const char* option;
+    bool isGiven;
+    std::vector<std::string> kinds;
+  } options[] = {
+      {"--smooth",
+       o.smoothing != usual.smoothing,
+       {"mesh", "grids", "surface", "zarr", "sandatlas"}},
+      {o.maxDim > 0 ? "--max-dim" : "--reduce", reduces, {"mesh", "viz", "lod", "zarr"}},
+      {"--triangles", o.mostTriangles > 0, {"mesh", "zarr"}},
+      {"--compress", o.compress, {"vti"}},
+      {"--bool", o.asBool, {"grids"}},
+      {"--balls", o.clumps.mostBalls != usual.clumps.mostBalls, {"clumps"}},
+      {"--uncovered", o.clumps.coverageError != usual.clumps.coverageError, {"clumps"}},
+      {"--apart", o.clumps.apart, {"clumps"}},
+      {"--min-faces", o.minFaces != usual.minFaces, {"network", "zarr"}},
+      {"--ome", o.ome != usual.ome, {"zarr"}},
+      {"--meshes", o.meshes, {"zarr"}},
+  };
+  for (const auto& [option, isGiven, kinds] : options)
+    if (isGiven && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      throw WrongUsage(std::string(option) + " is for --as " + wordList(kinds, ", ") + ", not " +
+                       kind);
+  const bool ofMeshes = o.smoothing != usual.smoothing || reduces || o.mostTriangles > 0;
+  if (kind == "zarr" && ofMeshes && !o.meshes)
+    throw WrongUsage(
+        "--smooth, --reduce, --max-dim and --triangles are of the meshes of a .zarr: give "
+        "--meshes, too");
+}
+
 void runExport(const ExportArguments& o, const Common& common, const ExportKind& kind) {
   if (isFolder(o.out) && kind.run == exportMesh<Int32Grid>)
     checkOutputFolder(o.out);
@@ -211,6 +246,7 @@ void addExport(Verb command, Common& common, Action& action) {
     if (!o->grains.empty() && kind.run != exportMesh<Int32Grid>)
       throw WrongUsage("--select chooses the grains of --as mesh");
     checkTables(*o, kind);
+    checkOptions(*o, kind.name);
     o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();
     if (o->out == "-")

@@ -67,6 +67,7 @@ void exportMask(const ExportArguments& o, const Common& common, const Labels& la
   writeMask(o, box, labels, common.progress);
   noteLostEdges(o.out, hasCubicVoxels(about), storedVoxelSize(about), common);
   noteLostRegion(o.out, about, common);
+  noteLostPlace(o.out, about, common);
   say(o, common, "1 = grain, 0 = background, " + sizeText(box) + " of type uint8, x fastest");
 }
 

@@ -3,6 +3,8 @@
 
 #include "grid_image.h"
 
+#include <fmt/core.h>
+
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -49,6 +51,7 @@ void report(const std::string& path, const openvdb::GridBase& grid, const CoordB
             SampleType type, const Common& common) {
   noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
   noteLostRegion(path, grid, common);
+  noteLostPlace(path, grid, common);
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
 }
 
@@ -164,6 +167,19 @@ void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, cons
     common.progress->note(path +
                           ": does not say where the region ends: outside of it there is 0, as in "
                           "pores (a .vdb says it)");
+}
+
+void noteLostPlace(const std::string& path, const openvdb::GridBase& grid, const Common& common) {
+  const std::string ending = fileEnding(path);
+  for (const char* hasPlace : {".mha", ".mhd", ".nrrd", ".nhdr"})
+    if (ending == hasPlace) return;
+  const auto domain = storedDomain(grid);
+  const Coord first = domain ? domain->box().min() : Coord(0);
+  if (first != Coord(0))
+    common.progress->note(fmt::format(
+        "{}: begins at voxel {},{},{} of the scan, and where it is read its first one is 0,0,0 "
+        "(a .vdb keeps the place)",
+        path, first.x(), first.y(), first.z()));
 }
 
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

@@ -39,6 +39,8 @@ void noteLostEdges(const std::string& path, bool areCubes, const std::optional<V
 
 /// A note if a grid has a region, which no image holds.
 void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, const Common& common);
+/// A note if a grid does not begin at 0,0,0, and the image has no place for that.
+void noteLostPlace(const std::string& path, const openvdb::GridBase& grid, const Common& common);
 
 /// Says what samples an image has, unless the user wants to hear nothing.
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

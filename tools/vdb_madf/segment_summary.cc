@@ -47,7 +47,8 @@ std::vector<std::string> hints(const SegmentArguments& arguments, const SegmentS
       summary.fillHoles < 100)
     all.push_back(std::to_string(summary.counts.cavities) +
                   " small cavities: a noisy scan may need --fill-holes 100");
-  if (!arguments.tables.empty() && cutsGray(arguments.input) && !arguments.necks)
+  const bool cubes = !summary.voxelSize || summary.voxelSize->isCube();
+  if (!arguments.tables.empty() && cutsGray(arguments.input) && !arguments.necks && cubes)
     all.push_back(
         "areas of bonds are those of the thresholded scan, too large by its blur: "
         "--necks frees them of it");

@@ -45,6 +45,10 @@ Choices choicesOf(const Int32Grid& labels, const MeasureOptions& options) {
     throw InvalidInput(
         "the labels do not tell the threshold of a scan that they were made by: segment the scan "
         "itself with a threshold");
+  if (labels[kEditsKey])
+    throw InvalidInput(
+        "the sensitivity is that of grains as they were segmented, and these were edited: measure "
+        "it without the edits");
   const auto merging = storedMerging(labels);
   if (!merging || merging->options.mode != MergeMode::score)
     throw InvalidInput(
