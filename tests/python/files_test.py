@@ -92,6 +92,18 @@ def test_h5py_reads_labels_and_masks_while_others_are_written(labels, tmp_path):
         assert (mask["data"][...] == (np.asarray(labels) > 0)).all()
 
 
+@pytest.mark.parametrize("name, arguments, said", [
+    ("a.tif", dict(reduce=2), "reduce=2: is for mesh and zarr and preview, not labels"),
+    ("a.inp", dict(reduce=2), "reduce=2: is for"), ("a.vti", dict(smoothing=3), "smoothing=3: is"),
+    ("a.csv", dict(kind="network", apart=True), "apart=True: is for clumps, not network"),
+    ("a.zarr", dict(triangles=99), "triangles=99: is of the meshes of a .zarr: give meshes=True")])
+def test_arguments_of_other_kinds_are_refused(labels, tmp_path, name, arguments, said):
+    with pytest.raises(ValueError) as refused:
+        labels.save(tmp_path / name, **arguments)
+    assert str(refused.value).startswith(said)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_folder_of_meshes(labels, tmp_path):
     labels.save(tmp_path / "grains", kind="mesh")
     assert len(list((tmp_path / "grains").glob("grain_*.stl"))) == len(labels.ids)
@@ -101,7 +113,7 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
     for ome in ("0.4", "0.5", "0.6"):
         ours, theirs = (tmp_path / f"{place}{ome}.ome.zarr" for place in ("here", "there"))
         with_meshes = ome == "0.5"
-        labels.save(ours, ome=ome, meshes=with_meshes, reduce=2)
+        labels.save(ours, ome=ome, meshes=with_meshes, reduce=2 if with_meshes else 1)
         command("export", tables / "labels.vdb", theirs, "--ome", ome,
                 *["--meshes", "--reduce", "2"] * with_meshes)
         files = sorted(path.relative_to(ours) for path in ours.rglob("*"))

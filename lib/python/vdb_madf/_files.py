@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Mapping, Optional
 
 from . import _core
 
@@ -52,6 +52,39 @@ def kind_of(path: str, kind: Optional[str]) -> str:
         raise _core.InvalidInput(f"{path}: the ending for kind='{kind}' must be one of "
                                  f"{', '.join(e or 'none (a folder)' for e in KINDS[kind])}")
     return kind
+
+
+_MESHES = ("mesh", "zarr")
+#: argument of Labels.save() -> what it is where it is not given, and the kinds that it is for
+_ARGUMENTS = {
+    "smoothing": (10, (*_MESHES, "sandatlas", "level sets", "surface")),
+    "reduce": (1, (*_MESHES, "preview")),
+    "triangles": (None, _MESHES),
+    "compress": (False, ("vti",)),
+    "min_faces": (1, ("network", "zarr")),
+    "ome": ("0.4", ("zarr",)),
+    "meshes": (False, ("zarr",)),
+    "max_balls": (100, ("clumps",)),
+    "uncovered": (0.02, ("clumps",)),
+    "apart": (False, ("clumps",)),
+    "size": (512, ("picture",)),
+    "azimuth": (35, ("picture",)),
+    "elevation": (25, ("picture",)),
+}
+
+
+def refuse_unused(kind: str, arguments: Mapping[str, Any]) -> None:
+    """InvalidInput for arguments of Labels.save() that a file of this kind has no use for."""
+    for name, (usual, kinds) in _ARGUMENTS.items():
+        value = arguments[name]
+        if value == usual:
+            continue
+        if kind not in kinds:
+            raise _core.InvalidInput(f"{name}={value!r}: is for {' and '.join(kinds)}, not {kind}")
+        of_meshes = name in ("smoothing", "reduce", "triangles")
+        if kind == "zarr" and of_meshes and not arguments["meshes"]:
+            raise _core.InvalidInput(f"{name}={value!r}: is of the meshes of a .zarr: give "
+                                     "meshes=True, too")
 
 
 def is_tiff(path: str) -> bool:

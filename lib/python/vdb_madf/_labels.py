@@ -15,7 +15,7 @@ from . import _core
 from ._arguments import checked
 from ._arrays import Source, readable, refuse_parts
 from ._calls import Progress, calling, warn
-from ._files import is_tiff, kind_of, loaded
+from ._files import is_tiff, kind_of, loaded, refuse_unused
 from ._mesh import Mesh
 from ._volume import Volume, edges_of, fitted, same_grid
 
@@ -221,8 +221,10 @@ class Labels(Volume):
         - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,
           `elevation`
         """
+        arguments = dict(locals())
         name = os.fspath(path)
         kind = kind_of(name, kind)
+        refuse_unused(kind, arguments)
         if type is not None and (kind not in ("labels", "mask") or name.lower().endswith(".vdb")):
             raise _core.InvalidInput(f"type={type!r}: {name} has no type of samples to choose")
         grid = self._grid
