@@ -114,7 +114,7 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   if (given.radius) return {axis.axis, axis.center, *given.radius};
   const auto fitted = given.center ? std::nullopt : fittedCylinder(box, axis, extent);
   const Cylinder cylinder =
-      fitted.value_or(Cylinder{axis.axis, axis.center, fittedRadius(path, box, axis, extent)});
+      fitted ? *fitted : Cylinder{axis.axis, axis.center, fittedRadius(path, box, axis, extent)};
   if (options.note)
     options.note(
         fmt::format("{}: the region is a cylinder along {} around {} {}, {} {}, {} {} voxels {}",
