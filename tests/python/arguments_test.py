@@ -91,6 +91,7 @@ def test_numbers_out_of_range(array):
     (dict(phase=[1, float("nan")]), "phase=nan: not a finite number"),
     (dict(phase=1, crop=np.s_[-9:, :, :]), "crop: slice(-9, None, None): places are counted from"),
     (dict(phase=1, crop=np.s_[-9:9, :, :]), "crop: slice(-9, 9, None): places are counted from"),
+    (dict(phase=[]), "phase=[]: names no value"),
     (dict(phase=1, grid="x"), "grid: names a part of a file, and this is an array"),
     (dict(phase=1, dataset="x"), "dataset: names a part of a file, and this is an array"),
     (dict(phase=1, crop=np.s_[:-5, :, :]), "crop: slice(None, -5, None): places are counted from")])

@@ -140,8 +140,10 @@ def test_names_of_axes_are_looked_at(order, array):
 
 
 def test_other_names_of_axes_are_taken_in_order(array):
-    for names in (("time", "row", "column"), ("x", "y", "depth"), ("Z", "Y", "X")):
+    for names in (("time", "row", "column"), ("depth", "y", "x"), ("Z", "Y", "X")):
         assert np.array_equal(madf.Mask(Named(array, names), **PHASE), array)
+    with pytest.raises(ValueError, match="the axes are called x, y, depth: call all three"):
+        madf.Mask(Named(array, ("x", "y", "depth")), **PHASE)
 
 
 def test_an_error_of_the_array_comes_out(array):

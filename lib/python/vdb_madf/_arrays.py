@@ -68,7 +68,12 @@ def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
     if not isinstance(dims, tuple):  # the names of h5py are no tuple, and mostly empty
         return None
     names = [str(name).lower() for name in dims]
-    if sorted(names) != ["x", "y", "z"] or names == ["z", "y", "x"]:
+    if sorted(names) != ["x", "y", "z"]:
+        if any(name in ("x", "y", "z") and name != usual for name, usual in zip(names, "zyx")):
+            raise ValueError(f"the axes are called {', '.join(map(str, dims))}: call all three x, "
+                             "y and z, or bring them into the order z, y, x")
+        return None
+    if names == ["z", "y", "x"]:
         return None
     return names.index("z"), names.index("y"), names.index("x")
 

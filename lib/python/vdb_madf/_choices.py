@@ -96,6 +96,8 @@ def volume_options(
         raise ValueError("give only one of phase, threshold and range")
     if despeckle < 0:
         raise ValueError(f"despeckle={despeckle}: must be 0 or more")
+    if isinstance(phase, Collection) and not phase:
+        raise ValueError("phase=[]: names no value")
     options = _core.VolumeOptions()
     if phase is not None:
         options.select_phases([_finite("phase", v) for v in phase] if isinstance(phase, Collection)
