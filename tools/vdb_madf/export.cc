@@ -107,13 +107,9 @@ const ExportKind& findKind(const ExportArguments& o) {
   throw WrongUsage("--as " + wanted + ": must be one of " + kindNames());
 }
 
-/// @throw WrongUsage for tables that would not be written
-void checkTables(const ExportArguments& o, const ExportKind& kind) {
+void checkTables(const ExportArguments& o) {
   for (const auto& [option, file] : {std::pair("--bonds", &o.bonds), {"--cover", &o.cover}}) {
-    if (file->empty()) continue;
-    if (kind.run != exportClumps)
-      throw WrongUsage(std::string(option) + " is a table of --as clumps");
-    if (fileEnding(*file) != ".csv")
+    if (!file->empty() && fileEnding(*file) != ".csv")
       throw WrongUsage(*file + ": the ending for " + option + " must be .csv");
   }
 }
@@ -132,11 +128,14 @@ void checkOptions(const ExportArguments& o, const std::string& kind) {
        {"mesh", "grids", "surface", "zarr", "sandatlas"}},
       {o.maxDim > 0 ? "--max-dim" : "--reduce", reduces, {"mesh", "viz", "lod", "zarr"}},
       {"--triangles", o.mostTriangles > 0, {"mesh", "zarr"}},
+      {"--select", !o.select.empty(), {"mesh"}},
       {"--compress", o.compress, {"vti"}},
       {"--bool", o.asBool, {"grids"}},
       {"--balls", o.clumps.mostBalls != usual.clumps.mostBalls, {"clumps"}},
       {"--uncovered", o.clumps.coverageError != usual.clumps.coverageError, {"clumps"}},
       {"--apart", o.clumps.apart, {"clumps"}},
+      {"--bonds", !o.bonds.empty(), {"clumps"}},
+      {"--cover", !o.cover.empty(), {"clumps"}},
       {"--min-faces", o.minFaces != usual.minFaces, {"network", "zarr"}},
       {"--ome", o.ome != usual.ome, {"zarr"}},
       {"--meshes", o.meshes, {"zarr"}},
@@ -243,10 +242,8 @@ void addExport(Verb command, Common& common, Action& action) {
     o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
     const ExportKind& kind = findKind(*o);
     o->grains = parseGrains(o->select, "--select");
-    if (!o->grains.empty() && kind.run != exportMesh<Int32Grid>)
-      throw WrongUsage("--select chooses the grains of --as mesh");
-    checkTables(*o, kind);
     checkOptions(*o, kind.name);
+    checkTables(*o);
     o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();
     if (o->out == "-")

@@ -42,15 +42,19 @@ def shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def is_path(source: Any) -> bool:
+    return isinstance(source, (str, os.PathLike))
+
+
 def readable(source: Any) -> Union[str, _core.ArraySource]:
     """A path, or the array as a source of slabs, of which nothing is read yet."""
-    return os.fspath(source) if isinstance(source, (str, os.PathLike)) else _array_source(source)
+    return os.fspath(source) if is_path(source) else _array_source(source)
 
 
 def refuse_parts(source: Any, **parts: Optional[str]) -> None:
     """ValueError for the name of a part of a file where there is no file."""
     for name, part in parts.items():
-        if part is not None and not isinstance(source, (str, os.PathLike)):
+        if part is not None and not is_path(source):
             what = "there is none" if source is None else "this is an array"
             raise ValueError(f"{name}: names a part of a file, and {what}: leave it out")
 
@@ -68,13 +72,11 @@ def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
     if not isinstance(dims, tuple):  # the names of h5py are no tuple, and mostly empty
         return None
     names = [str(name).lower() for name in dims]
+    if not any(name in ("x", "y", "z") and name != usual for name, usual in zip(names, "zyx")):
+        return None
     if sorted(names) != ["x", "y", "z"]:
-        if any(name in ("x", "y", "z") and name != usual for name, usual in zip(names, "zyx")):
-            raise ValueError(f"the axes are called {', '.join(map(str, dims))}: call all three x, "
-                             "y and z, or bring them into the order z, y, x")
-        return None
-    if names == ["z", "y", "x"]:
-        return None
+        raise ValueError(f"the axes are called {', '.join(map(str, dims))}: call all three x, y "
+                         "and z, or bring them into the order z, y, x")
     return names.index("z"), names.index("y"), names.index("x")
 
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import tempfile
 from typing import Any, Callable, Mapping, Optional
@@ -55,29 +56,29 @@ def kind_of(path: str, kind: Optional[str]) -> str:
 
 
 _MESHES = ("mesh", "zarr")
-#: argument of Labels.save() -> what it is where it is not given, and the kinds that it is for
-_ARGUMENTS = {
-    "smoothing": (10, (*_MESHES, "sandatlas", "level sets", "surface")),
-    "reduce": (1, (*_MESHES, "preview")),
-    "triangles": (None, _MESHES),
-    "compress": (False, ("vti",)),
-    "min_faces": (1, ("network", "zarr")),
-    "ome": ("0.4", ("zarr",)),
-    "meshes": (False, ("zarr",)),
-    "max_balls": (100, ("clumps",)),
-    "uncovered": (0.02, ("clumps",)),
-    "apart": (False, ("clumps",)),
-    "size": (512, ("picture",)),
-    "azimuth": (35, ("picture",)),
-    "elevation": (25, ("picture",)),
+#: argument of Labels.save() -> the kinds that it is for
+_USED_BY = {
+    "smoothing": (*_MESHES, "sandatlas", "level sets", "surface"),
+    "reduce": (*_MESHES, "preview"),
+    "triangles": _MESHES,
+    "compress": ("vti",),
+    "min_faces": ("network", "zarr"),
+    "ome": ("zarr",),
+    "meshes": ("zarr",),
+    "max_balls": ("clumps",),
+    "uncovered": ("clumps",),
+    "apart": ("clumps",),
+    "size": ("picture",),
+    "azimuth": ("picture",),
+    "elevation": ("picture",),
 }
 
 
-def refuse_unused(kind: str, arguments: Mapping[str, Any]) -> None:
+def refuse_unused(kind: str, arguments: Mapping[str, Any], save: inspect.Signature) -> None:
     """InvalidInput for arguments of Labels.save() that a file of this kind has no use for."""
-    for name, (usual, kinds) in _ARGUMENTS.items():
+    for name, kinds in _USED_BY.items():
         value = arguments[name]
-        if value == usual:
+        if value == save.parameters[name].default:
             continue
         if kind not in kinds:
             raise _core.InvalidInput(f"{name}={value!r}: is for {' and '.join(kinds)}, not {kind}")

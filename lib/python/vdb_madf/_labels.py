@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import tempfile
 from typing import Any, Callable, Optional, Sequence, Tuple, Union
@@ -221,10 +222,10 @@ class Labels(Volume):
         - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,
           `elevation`
         """
-        arguments = dict(locals())
+        arguments = locals().copy()
         name = os.fspath(path)
         kind = kind_of(name, kind)
-        refuse_unused(kind, arguments)
+        refuse_unused(kind, arguments, inspect.signature(Labels.save))
         if type is not None and (kind not in ("labels", "mask") or name.lower().endswith(".vdb")):
             raise _core.InvalidInput(f"type={type!r}: {name} has no type of samples to choose")
         grid = self._grid

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import ArrayLike3D, Source, readable, refuse_parts
+from ._arrays import ArrayLike3D, Source, is_path, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._choices import Box, Cylinder, volume_options
 from ._volume import Volume, edges_of, same_grid
@@ -57,7 +57,7 @@ class Mask(Volume):
             mask_type=Mask, phase=phase, threshold=threshold, range=range, invert=invert,
             median=median, smooth=smooth, despeckle=despeckle,
             voxel_size=edges_of(source, voxel_size), roi=roi, crop=crop, domain=domain,
-            dataset=dataset, grid=grid, of_array=not isinstance(source, (str, os.PathLike)))
+            dataset=dataset, grid=grid, of_array=not is_path(source))
         refuse_parts(source, dataset=dataset, grid=grid)
         with calling(progress, threads) as call:
             chosen = (phase, threshold, range)

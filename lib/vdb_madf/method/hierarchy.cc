@@ -299,8 +299,8 @@ class Joining {
     return {score, first, second, contact, c.version};
   }
 
-  void wait(uint32_t contact, const Pair& pair, int32_t restOfScore) {
-    push(clusters_[pair.b].pairs, waiting(restOfScore, contact));
+  void wait(uint32_t contact, const Pair& pair, int32_t rest) {
+    push(clusters_[pair.b].pairs, waiting(rest, contact));
     const detail::ScoredClass &a = clusters_[pair.a].size, &b = clusters_[pair.b].size;
     if (a.top == b.top || (b.sure < b.top && b.voxels > a.voxels))
       push(clusters_[pair.a].larger, {b.voxels, contact, contacts_[contact].version});

@@ -13,7 +13,6 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kRowsPerChunk = 16;
 /// Bins narrower than this (in powers of two) would not multiply out.
 constexpr int kLeastExponent = -1000;
 
@@ -209,18 +208,9 @@ void CountedImage::read(int first, int count, void* samples) {
       lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
                      double(lastRow[nx - 1])});
     }
-    parallelFor(size_t(info_.size.y) * size_t(count), kRowsPerChunk, nullptr,
-                [&](size_t begin, size_t end) {
-                  HistogramBuilder& builder = builders_.local();
-                  for (size_t row = begin; row < end; ++row) {
-                    if (!parts_) {
-                      builder.addRow(rows + row * nx, nx);
-                      continue;
-                    }
-                    for (const auto& [from, to] : parts_(int(row % ny), first + int(row / ny)))
-                      builder.addRow(rows + row * nx + from, size_t(to - from));
-                  }
-                });
+    forEachRowPart(rows, info_.size, first, count, parts_, [&](const auto* values, size_t length) {
+      builders_.local().addRow(values, length);
+    });
   });
 }
 

@@ -59,6 +59,24 @@ using RowParts = std::function<std::vector<std::pair<int, int>>(int y, int z)>;
 /// The row in the middle of each slice.
 RowParts middleRows(const ImageSize& size);
 
+/// Calls f(samples, count) for these parts of the rows of `count` slices from `first` on, in
+/// parallel. \p parts absent: whole rows
+template <typename T, typename F>
+void forEachRowPart(const T* samples, const ImageSize& size, int first, int count,
+                    const RowParts& parts, const F& f) {
+  constexpr size_t kRowsPerChunk = 16;
+  const auto nx = size_t(size.x), ny = size_t(size.y);
+  parallelForEach(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t row) {
+    const T* const begin = samples + row * nx;
+    if (!parts) {
+      f(begin, nx);
+      return;
+    }
+    for (const auto& [from, to] : parts(int(row % ny), first + int(row / ny)))
+      f(begin + from, size_t(to - from));
+  });
+}
+
 /// Reads another image and counts what it reads.
 class CountedImage : public ImageReader {
  public:

@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/scans/detail/histogram_builder.h"
 
@@ -27,27 +26,15 @@ class NanCount : public ImageReader {
   void read(int first, int count, void* samples) override {
     image_.read(first, count, samples);
     withSampleType(info_.type, [&](auto sample) {
-      if constexpr (std::is_floating_point_v<decltype(sample)>)
-        add(first, count, static_cast<const decltype(sample)*>(samples));
+      using T = decltype(sample);
+      if constexpr (std::is_floating_point_v<T>)
+        forEachRowPart(static_cast<const T*>(samples), info_.size, first, count, parts_,
+                       [&](const T* values, size_t length) { voxels_ += nansOf(values, length); });
     });
   }
   int64_t voxels() const { return voxels_; }  ///< of the slices read so far
 
  private:
-  template <typename T>
-  void add(int first, int count, const T* samples) {
-    constexpr size_t kRowsPerChunk = 64;
-    const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
-    parallelForEach(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t row) {
-      const T* values = samples + row * nx;
-      if (!parts_) {
-        voxels_ += nansOf(values, nx);
-        return;
-      }
-      for (const auto& [from, to] : parts_(int(row % ny), first + int(row / ny)))
-        voxels_ += nansOf(values + from, size_t(to - from));
-    });
-  }
   template <typename T>
   static int64_t nansOf(const T* values, size_t count) {
     int64_t nans = 0;
