@@ -57,6 +57,13 @@ TEST_CASE("slice_names: numbers without a gap are no news", "[slice_names]") {
   }
 }
 
+TEST_CASE("slice_names: every k-th slice may be higher than the scan's", "[slice_names]") {
+  CHECK_THAT(noteOn({"a0.tif", "a4.tif", "a8.tif", "a12.tif"}),
+             vdb_madf::test::Contains("numbered by 4, as a0.tif and a4.tif, and taken for "
+                                      "neighbors"));
+  CHECK(notesOn({"a0.tif", "a4.tif", "a8.tif", "a13.tif"}) == Names{});
+}
+
 TEST_CASE("slice_names: what may not belong to the stack is said", "[slice_names]") {
   CHECK_THAT(noteOn({"a06.tif", "a6.tif", "a7.tif"}),
              vdb_madf::test::Contains("1 number of slices there twice, as in a06.tif and a6.tif"));

@@ -166,6 +166,15 @@ def test_grains_are_chosen(labels, dense):
     assert half.spacing == tuple(2 * s for s in labels.spacing)
 
 
+def test_grains_that_a_reduction_loses_are_said(tmp_path):
+    small = np.zeros((8, 8, 8), np.int32)
+    small[:4], small[6, 6, 6] = 1, 2
+    labels = madf.Labels(small)
+    for work in (lambda: labels.reduce(2), lambda: labels.save(tmp_path / "a.ply", reduce=2)):
+        with pytest.warns(UserWarning, match="1 of 2 grains are too small to be seen"):
+            work()
+
+
 def test_places(sample, labels, array):
     assert labels.unit == "mm" and labels.spacing == (0.01,) * 3 and labels.origin == (0, 0, 0)
     assert labels.voxel_size == (1e-5,) * 3 and labels.first == (0, 0, 0)

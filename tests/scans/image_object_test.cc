@@ -297,7 +297,13 @@ TEST_CASE("image_object: counts what is no number, wherever it lies in the domai
   CHECK(nansBy(Selection::threshold(5), smooth) == 4);
   CHECK(nansBy(Selection::range(1, 5)) == 4);
   const Domain slice(CoordBBox(Coord(0, 0, 1), Coord(5, 4, 2)));
-  CHECK(imageObject(open, Selection::threshold(5), {}, ScanPart{slice.box(), slice}).nans == 1);
+  const ImageObject inSlice =
+      imageObject(open, Selection::threshold(5), {}, ScanPart{slice.box(), slice});
+  CHECK(inSlice.nans == 1);
+  CHECK(inSlice.infinities == 1);
+  const Domain below(CoordBBox(Coord(0, 0, 0), Coord(5, 4, 0)));
+  CHECK(imageObject(open, Selection::threshold(5), {}, ScanPart{below.box(), below}).infinities ==
+        0);
 }
 
 TEST_CASE("image_object: smoothed values are no phases", "[image_object]") {

@@ -3,12 +3,14 @@
 
 // What the command says though it is no error: on stderr, unless quiet, and in JSON.
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "support/catch.h"
 #include "support/command_runs.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
@@ -191,4 +193,31 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
   CHECK_THAT(other.err, vdb_madf::test::Contains("1, 0.7143, 0.4167 times as long"));
   notes(bench, "convert flat.vdb o.vdb --voxel-size 0.5x0.7x1.3um",
         {"0.5 x 0.7 x 1.2 um", "0.5 x 0.7 x 1.3 um"});
+}
+
+TEST_CASE("cli: grains that vanish in reduced labels are said", "[cli]") {
+  const Bench bench;
+  initialize();
+  const auto grid = Int32Grid::create();
+  grid->denseFill(CoordBBox(Coord(0), Coord(7, 7, 3)), 1);
+  grid->denseFill(CoordBBox(Coord(5, 5, 6), Coord(5, 5, 6)), 2);
+  setDomain(*grid, CoordBBox(Coord(0), Coord(7)));
+  grid->setName("grain");
+  writeVdb(bench.path("g.vdb"), {grid});
+  for (const std::string out : {"m.ply --reduce 2", "l.vdb --as lod", "m.ply --max-dim 4"})
+    notes(bench, "export g.vdb " + out, {"1 of 2 grains are too small to be seen in reduced"});
+  bench.mustRun("export g.vdb m.ply");
+}
+
+TEST_CASE("cli: values that are no finite numbers are counted", "[cli]") {
+  const Bench bench;
+  std::vector<float> values(64, 1);
+  values[0] = values[10] = values[11] = NAN;
+  values[20] = INFINITY;
+  bench.write("a.raw", {reinterpret_cast<const char*>(values.data()), 4 * values.size()});
+  const std::string layout = " --dims 4x4x4 --type float32";
+  const std::string said = bench.run("segment a.raw s.vdb --threshold 2" + layout).err;
+  CHECK_THAT(said, vdb_madf::test::Contains("a.raw: has 3 voxels without a number (NaN), taken for "
+                                            "scanned background: if they are around a round"));
+  CHECK_THAT(said, vdb_madf::test::Contains("a.raw: has 1 voxel of infinite value"));
 }

@@ -117,6 +117,7 @@ void runCompare(const CompareArguments& o, const Common& common) {
   }
   checkAnyCommon(comparison, names);
   common.progress->end();
+  for (const std::string& note : notesOn(comparison, *truth, *test)) common.progress->note(note);
   OutputSet files;
   grainFile.write(grainTable(comparison));
   confusionFile.write(confusionTable(comparison));
@@ -126,10 +127,7 @@ void runCompare(const CompareArguments& o, const Common& common) {
   files.commit();
   const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
                      confusionFile.isStandardOutput();
-  if (common.quiet || asked) return;
-  print(comparison);
-  for (const std::string& note : notesOn(comparison, *truth, *test))
-    std::printf("note: %s\n", note.c_str());
+  if (!common.quiet && !asked) print(comparison);
 }
 
 }  // namespace

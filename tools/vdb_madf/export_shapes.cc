@@ -21,6 +21,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_masks.h"
+#include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/measure/grain_network.h"
@@ -39,6 +40,17 @@ std::string unitOf(const openvdb::GridBase& grid) {
   return size ? size->unit() : std::string();
 }
 
+/// Says how many grains have no voxel any more where labels were reduced.
+template <typename Labels>
+void noteVanished(const ExportArguments& o, const Common& common, const Labels& labels,
+                  const Int32Grid& reduced) {
+  const size_t grains = labelSizes(labels, common.progress).size(),
+               left = labelSizes(reduced, common.progress).size();
+  if (left < grains)
+    common.progress->note(fmt::format("{}: {} of {} are too small to be seen in reduced labels",
+                                      o.out, grains - left, counted(grains, "grain")));
+}
+
 /// Labels as they are meshed: those of the chosen grains, reduced.
 template <typename Labels>
 Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
@@ -47,6 +59,7 @@ Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
   if constexpr (std::is_same_v<Labels, Int32Grid>)
     if (factor == 1) all = labels.copy();
   if (!all) all = reduceLabels(labels, factor, common.progress);
+  if (factor > 1) noteVanished(o, common, labels, *all);
   return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
 }
 
@@ -131,6 +144,7 @@ template <typename Labels>
 void exportReduced(const ExportArguments& o, const Common& common, const Labels& labels) {
   const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, aboutOf(labels));
   const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
+  noteVanished(o, common, labels, *reduced);
   writeVdb(o.out, {reduced}, common.progress);
   say(o, common,
       fmt::format("labels at 1/{}, {}", factor, counted(reduced->activeVoxelCount(), "voxel")));

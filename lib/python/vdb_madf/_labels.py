@@ -170,8 +170,16 @@ class Labels(Volume):
     def reduce(self, factor: int) -> "Labels":
         """The volume smaller by a whole factor: each voxel has the most frequent label of its
         own. `origin` is where the center of its first voxel lies: meshes, networks and napari's
-        layers are there, places in tables count from that center."""
-        return Labels._of(_core.reduce(self._grid, factor, _core.Call(None, 0)))
+        layers are there, places in tables count from that center. Warns of grains too small to
+        have a voxel of it."""
+        return self._reduced(factor, _core.Call(None, 0))
+
+    def _reduced(self, factor: int, call: _core.Call) -> "Labels":
+        reduced = Labels._of(_core.reduce(self._grid, factor, call))
+        lost = len(self.ids) - len(reduced.ids)
+        if lost:
+            warn([f"{lost} of {len(self.ids)} grains are too small to be seen in reduced labels"])
+        return reduced
 
     def colors(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8]]:
         """(N,) labels and (N, 3) sRGB, such that grains that touch never look alike."""
@@ -239,7 +247,7 @@ class Labels(Volume):
             elif kind == "mask":
                 _core.save_image(name, _core.mask_of_labels(grid), type or "", False, call)
             elif kind == "mesh":
-                meshed = grid if reduce == 1 else _core.reduce(grid, reduce, call)
+                meshed = grid if reduce == 1 else self._reduced(reduce, call)._grid
                 _core.save_mesh(name, grid, meshed, smoothing, triangles, call)
             elif kind == "vti":
                 _core.save_vti(name, grid, compress, call)

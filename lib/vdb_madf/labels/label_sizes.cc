@@ -45,4 +45,12 @@ std::map<int32_t, int64_t> labelSizes(const Int32Grid& labels, Interrupter* inte
   return sizes;
 }
 
+std::map<int32_t, int64_t> labelSizes(const LabelSlabs& labels, Interrupter* interrupter) {
+  Sizes sizes;
+  for (size_t slab = 0; slab < labels.slabCount(); ++slab)
+    for (const auto& [label, voxels] : labelSizes(*labels.read(slab, interrupter), interrupter))
+      sizes[label] += voxels;
+  return sizes;
+}
+
 }  // namespace vdb_madf

@@ -94,10 +94,13 @@ void checkAnyCommon(const Tracks& tracks, const PairNames& names) {
 std::vector<std::string> notesOn(const Comparison& comparison, const Int32Grid& truth,
                                  const Int32Grid& test) {
   std::vector<std::string> notes;
-  if (comparison.truthOnlyVoxels > 0 || comparison.testOnlyVoxels > 0)
+  const int64_t others = comparison.truthOnlyVoxels + comparison.testOnlyVoxels;
+  if (others > 0)
     notes.push_back(
-        "the grids differ in topology; all but grains and their unions is compared over the voxels "
-        "labeled in both");
+        "the grids differ in topology: " +
+        percent(double(comparison.commonVoxels) / double(comparison.commonVoxels + others)) +
+        " of the labeled voxels are labeled in both, and all but grains and their "
+        "unions is compared over these alone");
   const auto a = storedDomain(truth), b = storedDomain(test);
   if (a && b && *a != *b)
     notes.push_back("the domains differ: " + domainText(*a) + " and " + domainText(*b) +

@@ -19,7 +19,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/detail/histogram_builder.h"
-#include "vdb_madf/scans/detail/nan_count.h"
+#include "vdb_madf/scans/detail/non_finite_count.h"
 #include "vdb_madf/scans/detail/scan_part.h"
 #include "vdb_madf/scans/filtered_image.h"
 #include "vdb_madf/scans/histogram.h"
@@ -261,7 +261,7 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
   const auto rowsIn = [&](const Domain& domain) {
     return detail::rowsOf({CoordBBox::inf(), domain}, opened->info().size);
   };
-  detail::NanCount read(*opened, part ? rowsIn(part->domain) : nullptr);
+  detail::NonFiniteCount read(*opened, part ? rowsIn(part->domain) : nullptr);
   ImageObject object;
   if (!gray.low && chosen.kind == Selection::Kind::nonZero) {
     object = plainMask(read, chosen, part, &reading, takeRead);
@@ -275,7 +275,8 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
     }
     object.corner = cornerOfGray(counted.histogram(), opened->info().size.z);
   }
-  object.nans = read.voxels();
+  object.nans = read.nans();
+  object.infinities = read.infinities();
   if (readsGray(gray) || (chosen.kind == Selection::Kind::threshold && chosen.invert))
     describeObject(chosen, gray, *object.mask);
   if (chosen.kind == Selection::Kind::threshold)

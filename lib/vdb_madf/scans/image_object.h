@@ -60,7 +60,8 @@ struct ImageObject {
   /// The one value at the four corners of all slices of a gray image, as around a round field of
   /// view: of kCornerSlices and more that were read without a part.
   std::optional<double> corner = std::nullopt;
-  int64_t nans = 0;  ///< voxels of the domain whose values are no numbers; none is object
+  int64_t nans = 0;        ///< voxels of the domain that are NaN; none is object
+  int64_t infinities = 0;  ///< voxels of the domain that are infinite; they count by their sign
 };
 
 /// In fewer slices all corners may well have one value by chance.

@@ -136,6 +136,11 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
       text += ": if they are around a round field of view, say that the scan is a cylinder";
     options.note(text, part ? NoteAbout::file : NoteAbout::cylinder);
   }
+  if (found.infinities > 0 && options.note)
+    options.note(path + ": has " + counted(found.infinities, "voxel") +
+                     " of infinite value, above or below all numbers: give those without a value "
+                     "NaN",
+                 NoteAbout::file);
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
   if (options.domain && !part) setDomain(*found.mask, *options.domain);
   return found.mask;

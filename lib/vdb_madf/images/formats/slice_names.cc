@@ -3,6 +3,7 @@
 
 #include "vdb_madf/images/formats/slice_names.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -48,6 +49,8 @@ struct Gaps {
   int64_t missing = 0;
   size_t places = 0, twice = 0;
   std::string first, firstTwice;  ///< "a6.tif and a8.tif"
+  int64_t stride = 1;             ///< above 1: slices are numbered by it throughout
+  std::string firstStride;
 };
 
 std::string both(const SliceName& a, const SliceName& b) {
@@ -73,6 +76,9 @@ int64_t usualStep(const std::vector<int64_t>& steps) {
   return usual > 0 && 2 * counts[usual] >= steps.size() ? usual : 0;
 }
 
+/// So many equal steps may well be chance, or heights.
+constexpr size_t kFewSteps = 2;
+
 /// Of names [begin, end), which are of one kind.
 void addGaps(const Names& names, size_t begin, size_t end, Gaps& gaps) {
   if (end - begin < 2 || names[begin].numbers.empty()) return;
@@ -85,6 +91,11 @@ void addGaps(const Names& names, size_t begin, size_t end, Gaps& gaps) {
   }
   const int64_t step = usualStep(steps);
   if (step == 0) return;
+  if (step > 1 && steps.size() > kFewSteps && gaps.stride == 1 &&
+      std::all_of(steps.begin(), steps.end(), [&](int64_t other) { return other == step; })) {
+    gaps.stride = step;
+    gaps.firstStride = both(names[begin], names[begin + 1]);
+  }
   for (size_t i = 0; i < steps.size(); ++i) {
     if (steps[i] < 2 * step) continue;
     gaps.missing += steps[i] / step - 1;
@@ -117,6 +128,12 @@ std::vector<std::string> numberingNotes(const std::string& folder,
                          ? "between "
                          : "in " + std::to_string(gaps.places) + " places, the first between ") +
                     gaps.first + ", by their numbers; what follows is moved up to close the gap");
+  if (gaps.stride > 1)
+    notes.push_back(folder + ": slices are numbered by " + std::to_string(gaps.stride) + ", as " +
+                    gaps.firstStride +
+                    ", and taken for neighbors: if those between them were left "
+                    "out, give the voxel size along z, which is then " +
+                    std::to_string(gaps.stride) + " times the scan's");
   if (gaps.twice > 0)
     notes.push_back(folder + ": " + counted(gaps.twice, "number") +
                     " of slices there twice, as in " + gaps.firstTwice + "; both are taken");

@@ -9,7 +9,8 @@
 namespace vdb_madf::detail {
 
 /// What the names of a folder's slices say of its gaps, one line each that names the folder:
-/// numbers that are left out, numbers that are there twice, and names of several kinds.
+/// numbers that are left out, a step above 1 between all, numbers that are there twice, and names
+/// of several kinds.
 ///
 /// The number that counts is the first one that differs within names of a kind (equal but for their
 /// numbers). Its step is that between most neighbors, so that every second slice is no gap; where

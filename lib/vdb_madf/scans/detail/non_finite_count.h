@@ -14,11 +14,12 @@
 
 namespace vdb_madf::detail {
 
-/// Reads another image and counts, in the parts of rows that count, the samples that are no number.
-class NanCount : public ImageReader {
+/// Reads another image and counts, in the parts of rows that count, the samples that are NaN, and
+/// those that are infinite.
+class NonFiniteCount : public ImageReader {
  public:
   /// @param parts absent: whole rows
-  NanCount(ImageReader& image, RowParts parts) : image_(image), parts_(std::move(parts)) {
+  NonFiniteCount(ImageReader& image, RowParts parts) : image_(image), parts_(std::move(parts)) {
     info_ = image.info();
     path_ = image.path();
     files_ = image.files();
@@ -29,22 +30,27 @@ class NanCount : public ImageReader {
       using T = decltype(sample);
       if constexpr (std::is_floating_point_v<T>)
         forEachRowPart(static_cast<const T*>(samples), info_.size, first, count, parts_,
-                       [&](const T* values, size_t length) { voxels_ += nansOf(values, length); });
+                       [&](const T* values, size_t length) { add(values, length); });
     });
   }
-  int64_t voxels() const { return voxels_; }  ///< of the slices read so far
+  int64_t nans() const { return nans_; }  ///< of the slices read so far
+  int64_t infinities() const { return infinities_; }
 
  private:
   template <typename T>
-  static int64_t nansOf(const T* values, size_t count) {
-    int64_t nans = 0;
-    for (size_t i = 0; i < count; ++i) nans += std::isnan(values[i]);
-    return nans;
+  void add(const T* values, size_t length) {
+    int64_t nans = 0, infinities = 0;
+    for (size_t i = 0; i < length; ++i) {
+      nans += std::isnan(values[i]);
+      infinities += std::isinf(values[i]);
+    }
+    nans_ += nans;
+    infinities_ += infinities;
   }
 
   ImageReader& image_;
   const RowParts parts_;
-  std::atomic<int64_t> voxels_{0};
+  std::atomic<int64_t> nans_{0}, infinities_{0};
 };
 
 }  // namespace vdb_madf::detail
