@@ -218,6 +218,24 @@ TEST_CASE("cli: convert selects among the grid that it would copy", "[cli]") {
   }
 }
 
+TEST_CASE("cli: an object in a file of whole blocks and its inverse make the box", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 64 --count 5 --radius 12");
+  bench.mustRun("convert s.vdb s.raw --grid object");
+  const std::string object = bench.bytes("s.raw");
+  for (const std::string region : {"", " --roi cylinder:z:31.5,31.5:30"}) {
+    bench.mustRun("convert s.vdb i.raw --grid object --invert" + region + " -q");
+    const std::string inverse = bench.bytes("i.raw");
+    int64_t expected = 0;
+    for (size_t i = 0; i < object.size(); ++i) {
+      const double x = double(i % 64) - 31.5, y = double(i / 64 % 64) - 31.5;
+      expected += (region.empty() || x * x + y * y <= 900) && object[i] == 0;
+      if (region.empty()) REQUIRE(inverse[i] != object[i]);
+    }
+    CHECK(std::count(inverse.begin(), inverse.end(), '\1') == expected);
+  }
+}
+
 TEST_CASE("cli: a header of a RAW file is skipped", "[cli]") {
   const Bench bench;
   bench.write("plain.raw", ramp());

@@ -7,6 +7,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/mask_sets.h"
 
 namespace vdb_madf {
 
@@ -51,7 +52,7 @@ Domain Domain::within(const Domain& other) const {
   if (region_) {
     MaskTree inside(*region_);
     if (other.region_)
-      inside.topologyIntersection(*other.region_);
+      detail::intersect(inside, *other.region_);
     else
       inside.clip(other.box_);
     return Domain(inside);

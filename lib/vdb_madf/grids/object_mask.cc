@@ -8,6 +8,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
+#include "vdb_madf/grids/detail/mask_sets.h"
 #include "vdb_madf/grids/detail/number_grids.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
@@ -91,9 +92,9 @@ MaskTree::Ptr voxelsOfDomain(const Tree& tree, const CoordBBox& extent, const Te
   MaskTree::Ptr mask = box(extent);
   if (test(tree.background(), false)) {
     const auto fails = [&](const auto& value, bool active) { return !test(value, active); };
-    mask->topologyDifference(*listedVoxels(tree, fails));
+    detail::subtract(*mask, *listedVoxels(tree, fails));
   } else {
-    mask->topologyIntersection(*listedVoxels(tree, test));
+    detail::intersect(*mask, *listedVoxels(tree, test));
   }
   return mask;
 }
@@ -120,7 +121,7 @@ MaskTree::Ptr objectOf(const Grid& grid, const std::optional<Selection>& selecti
     throw InvalidInput("grid '" + grid.getName() +
                        "': an inverted selection needs a domain, which this grid does not carry");
   const MaskTree::Ptr object = voxelsOfDomain(tree, extent->box(), accepts);
-  if (!extent->isBox()) object->topologyIntersection(*extent->region());
+  if (!extent->isBox()) detail::intersect(*object, *extent->region());
   return object;
 }
 

@@ -17,6 +17,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/mask_sets.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/detail/histogram_builder.h"
 #include "vdb_madf/scans/detail/non_finite_count.h"
@@ -182,7 +183,7 @@ ImageObject hysteresisMask(ImageReader& image, double low, const Selection& high
   }
   const MaskGrid::Ptr seeded = object->deepCopy();
   keepSeeded(*seeded, *masks[1], &end);
-  object->tree().topologyDifference(seeded->tree());
+  detail::subtract(object->tree(), seeded->tree());
   object->tree().topologyUnion(masks[2]->tree());
   return {object};
 }

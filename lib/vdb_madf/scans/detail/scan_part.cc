@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/grids/detail/mask_sets.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/slabs.h"
@@ -49,7 +50,9 @@ int64_t cut(const ScanPart& part, Grid& grid) {
 }  // namespace
 
 int64_t cutTo(const ScanPart& part, MaskGrid& mask) {
-  return cut(part, mask);
+  const int64_t leftOut = cut(part, mask);
+  detail::clearTilesOff(mask.tree());
+  return leftOut;
 }
 
 int64_t cutTo(const ScanPart& part, Int32Grid& labels) {
