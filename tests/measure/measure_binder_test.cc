@@ -105,6 +105,14 @@ TEST_CASE("measure_binder: a collar around a bond counts without the bond", "[me
   const Bridge& bridge = measured.binder->bridges.front();
   CHECK(bridge.bonded);
   CHECK(bridge.section == Approx(M_PI * (64 - 27)).epsilon(0.06));
+
+  MeasureOptions coarse;  // the contact is no bond then, and no binder, either
+  coarse.minFaces = measured.bonds[0].faces + 1;
+  Measurements fewer = measure(*labels, coarse);
+  REQUIRE(fewer.bonds.empty());
+  measureBinder(*labels, *binder, coarse, fewer);
+  CHECK_FALSE(fewer.binder->bridges.front().bonded);
+  CHECK(fewer.binder->bridges.front().section == bridge.section);
 }
 
 TEST_CASE("measure_binder: binder goes to the neighbor it reaches first", "[measure_binder]") {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -179,18 +180,21 @@ class BinderMeter {
     return areas;
   }
 
-  /// Between the grains with what is nearest to them, without their bonds.
+  /// Between the grains with what is nearest to them, without their contacts: those of too few
+  /// faces for a bond are no binder, either.
   void setSections(const Measurements& measured, std::vector<Bridge>& bridges,
                    Interrupter* interrupter) const {
-    const auto areas = interfaces(*grown_, interrupter);
-    std::map<LabelPair, double> bonds;
-    for (const BondMeasures& bond : measured.bonds) bonds[{bond.first, bond.second}] = bond.area;
+    const auto areas = interfaces(*grown_, interrupter),
+               contacts = interfaces(labels_, interrupter);
+    std::set<LabelPair> bonds;
+    for (const BondMeasures& bond : measured.bonds) bonds.emplace(bond.first, bond.second);
     for (Bridge& bridge : bridges) {
       const LabelPair pair(bridge.first, bridge.second);
-      const auto bond = bonds.find(pair);
-      bridge.bonded = bond != bonds.end();
+      bridge.bonded = bonds.count(pair) > 0;
+      const auto contact = contacts.find(pair);
       if (const auto area = areas.find(pair); area != areas.end())
-        bridge.section = std::max(0.0, area->second - (bridge.bonded ? bond->second : 0));
+        bridge.section =
+            std::max(0.0, area->second - (contact == contacts.end() ? 0 : contact->second));
       bridge.sectionRadius = std::sqrt(bridge.section / M_PI);
     }
   }
