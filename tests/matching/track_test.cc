@@ -402,6 +402,17 @@ TEST_CASE("track: options out of range are refused, and work can be stopped", "[
   for (const double share : {0.0, -0.5, 1.01, std::nan("")})
     refused([&](TrackOptions& o) { o.share = share; });
   refused([](TrackOptions& o) { o.minFaces = -1; });
+  // What is not looked at.
+  refused([](TrackOptions& o) { o.gap = 3; });
+  refused([](TrackOptions& o) { o.sureFaces = 100; });
+  refused([](TrackOptions& o) {
+    o.motion = MatchOptions{};
+    o.share = 0.9;
+  });
+  refused([](TrackOptions& o) {
+    o.motion = MatchOptions{};
+    o.maxShift = 0;
+  });
   refused([](TrackOptions& o) { o.shift = Coord(0, 1 << 30, 0); });
   StopAtOnce stop;
   CHECK_THROWS_AS(track(*balls, *balls, {}, &stop), Interrupted);

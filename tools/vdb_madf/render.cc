@@ -77,6 +77,12 @@ void parse(RenderArguments& o) {
   if (o.only == "view" && !o.slice.empty()) throw WrongUsage("--slice: --only view has no slices");
   if (o.only == "view" && !o.scan.path.empty())
     throw WrongUsage("--overlay: --only view has no slices");
+  const ViewOptions usual;
+  if (o.only == "slices" &&
+      (o.view.azimuth != usual.azimuth || o.view.elevation != usual.elevation))
+    throw WrongUsage("--azimuth, --elevation: --only slices has no view");
+  if (!o.with.empty() && o.colorBy.empty())
+    throw WrongUsage("--with: its columns are for --color-by COLUMN: give that, too");
   if (o.frames > 1 && o.only != "view") throw WrongUsage("--turn: it is of views: add --only view");
   o.planes = parseSlices(o.slice);
   if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)

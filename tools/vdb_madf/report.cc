@@ -61,6 +61,13 @@ void parse(ReportArguments& o) {
     throw WrongUsage("--with is of one sample: give the labels of one");
   if (!o.scan.path.empty() && o.samples.size() > 1)
     throw WrongUsage("--overlay is of one sample: give the labels of one");
+  const ReportOptions usual;
+  if (o.samples.size() > 1 && !o.isSeries &&
+      (o.noView || o.triangles != ReportArguments().triangles ||
+       o.report.maxSlice != usual.maxSlice))
+    throw WrongUsage(
+        "--no-3d, --triangles and --max-dim are of one sample or a --series: the page that "
+        "compares several has no view and no slices");
   checkScan(o.scan, o.input);
   if (o.isSeries && o.samples.size() == 1)
     throw WrongUsage("--series: give the labels of two scans or more, and last the page");

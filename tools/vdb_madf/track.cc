@@ -359,6 +359,7 @@ void addTrack(Verb command, Common& common, Action& action) {
     parse(*o);
     action = [o, &common] {
       if (!o->motion.empty()) o->track.motion = motionOf(o->motion);
+      checkOptions(o->track);
       if (!o->more.empty()) return runSeries(*o, besideOutput(common, o->more.back()));
       Common beside = common;
       for (const std::string& output :

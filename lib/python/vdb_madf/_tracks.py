@@ -68,9 +68,9 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     min_faces: of a bond.
     motion: the sample was turned or strained in between: "rigid" or "affine" is looked for, "free"
     follows neighbors alone, an array of 3 x 4 numbers is a guess (Tracks.motion says of what).
-    shift, max_shift and share are not looked at then. gap: voxels between the grains of a broken
-    bond up to which it is detached, else separated. sure_faces: of a bond of fewer faces it is
-    undecided whether it has broken.
+    shift is not looked at then, and max_shift and share are refused. gap: voxels between the grains
+    of a broken bond up to which it is detached, else separated. sure_faces: of a bond of fewer
+    faces it is undecided whether it has broken; both are refused without a motion.
     The manual of `vdb_madf track` defines the fates. A warning says if hardly more is common than
     of unrelated samples, and with a motion if more of the sample is lost than followed.
 

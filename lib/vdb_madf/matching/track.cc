@@ -31,22 +31,21 @@ using detail::Links;
 using detail::Sides;
 using detail::TrackedGrains;
 
-void check(const TrackOptions& options) {
-  if (options.maxShift < 0 || options.maxShift > kMaxShift)
-    throw InvalidInput("the largest shift must lie between 0 and " + std::to_string(kMaxShift) +
-                       " voxels");
-  if (!(options.share > 0 && options.share <= 1))
-    throw InvalidInput("the share of voxels that links grains must lie above 0, and be 1 at most");
-  if (options.minFaces < 0) throw InvalidInput("the fewest faces of a bond must be 0 or more");
-  if (options.sureFaces < 0)
-    throw InvalidInput("the faces of a bond that breaks for sure must be 0 or more");
-  if (options.gap < 1 || options.gap > kMaxGap)
-    throw InvalidInput("the gap of a detached bond must lie between 1 and " +
-                       std::to_string(kMaxGap) + " voxels");
-  if (options.shift)
-    for (int axis = 0; axis < 3; ++axis)
-      if (std::abs(int64_t((*options.shift)[axis])) > kMaxExtent)
-        throw InvalidInput("a shift is at most " + std::to_string(kMaxExtent) + " voxels");
+/// What is not looked at has to be as it is when nobody asks for it.
+void checkUsed(const TrackOptions& options) {
+  const TrackOptions usual;
+  const auto refuse = [](const char* what, const char* why) {
+    throw InvalidInput(std::string(what) + why + ": leave it out");
+  };
+  if (options.motion) {
+    const char* const why = " is of grains that lie on each other, and a motion does without";
+    if (options.share != usual.share) refuse("the share of common voxels", why);
+    if (options.maxShift != usual.maxShift) refuse("a largest shift", why);
+    return;
+  }
+  const char* const why = " is of bonds that a motion breaks, and none is given";
+  if (options.gap != usual.gap) refuse("the gap of a detached bond", why);
+  if (options.sureFaces != usual.sureFaces) refuse("how many faces break for sure", why);
 }
 
 /// The box of a domain that has moved; all there is, if it is unknown.
@@ -106,6 +105,25 @@ void judge(TrackedGrains& grains, const Links& own, const Links& other, GrainFat
 
 }  // namespace
 
+void checkOptions(const TrackOptions& options) {
+  if (options.maxShift < 0 || options.maxShift > kMaxShift)
+    throw InvalidInput("the largest shift must lie between 0 and " + std::to_string(kMaxShift) +
+                       " voxels");
+  if (!(options.share > 0 && options.share <= 1))
+    throw InvalidInput("the share of voxels that links grains must lie above 0, and be 1 at most");
+  if (options.minFaces < 0) throw InvalidInput("the fewest faces of a bond must be 0 or more");
+  if (options.sureFaces < 0)
+    throw InvalidInput("the faces of a bond that breaks for sure must be 0 or more");
+  if (options.gap < 1 || options.gap > kMaxGap)
+    throw InvalidInput("the gap of a detached bond must lie between 1 and " +
+                       std::to_string(kMaxGap) + " voxels");
+  if (options.shift)
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(int64_t((*options.shift)[axis])) > kMaxExtent)
+        throw InvalidInput("a shift is at most " + std::to_string(kMaxExtent) + " voxels");
+  checkUsed(options);
+}
+
 const char* toString(MotionKind kind) {
   constexpr const char* kNames[] = {"rigid", "affine", "free"};
   return kNames[size_t(kind)];
@@ -140,7 +158,7 @@ const char* toString(BondFate fate) {
 
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
              Interrupter* interrupter) {
-  check(options);
+  checkOptions(options);
   if (options.motion) {
     // The grids are the caller's.
     const auto shared = [](const Int32Grid& labels) {
@@ -191,7 +209,7 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
 
 Tracks track(const AnyLabels& before, const AnyLabels& after, const TrackOptions& options,
              Interrupter* interrupter) {
-  check(options);
+  checkOptions(options);
   if (options.motion) return detail::motionTracks(before, after, options, interrupter);
   const auto *const first = std::get_if<Int32Grid::ConstPtr>(&before),
                     *const second = std::get_if<Int32Grid::ConstPtr>(&after);

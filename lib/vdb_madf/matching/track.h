@@ -26,8 +26,8 @@ struct TrackOptions {
   /// 1].
   double share = 0.5;
   int64_t minFaces = 1;  ///< grains that share fewer voxel faces have no bond
-  /// The sample was turned or strained: grains are followed by matchGrains(), and the shift and the
-  /// share are not looked at.
+  /// The sample was turned or strained: grains are followed by matchGrains(), and the shift is not
+  /// looked at.
   std::optional<MatchOptions> motion = {};
   int gap = 2;  ///< voxels, with a motion: grains of a broken bond that are near; 1 to kMaxGap
   /// A bond that had fewer faces is undecided, with a motion, and not broken: so many may a rough
@@ -36,6 +36,10 @@ struct TrackOptions {
 };
 
 constexpr int kMaxShift = 256, kMaxGap = 16;
+
+/// @throw InvalidInput if an option is out of range, or differs from the default though nothing
+///   uses it: share and maxShift with a motion, gap and sureFaces without one
+void checkOptions(const TrackOptions& options);
 
 /// What becomes of a grain, or where it comes from.
 enum class GrainFate {
@@ -159,7 +163,7 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 /// up to 0.6 to 1.6 of its own, or, with its partner, nearer to its own than that alone. So they
 /// are split or merged.
 /// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
-/// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded; with a
+/// @throw InvalidInput as checkOptions(), or if a limit of leaf_index.h is exceeded; with a
 ///   motion if none is found, or voxels are no cubes; Interrupted.
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options = {},
              Interrupter* interrupter = nullptr);
