@@ -103,6 +103,54 @@ TEST_CASE("image_hdf5: every type, byte order and layout", "[image_hdf5]") {
       }
 }
 
+TEST_CASE("image_hdf5: half floats are floats", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
+  H5Tset_fields(half, 15, 10, 5, 0, 10);
+  H5Tset_size(half, 2);
+  H5Tset_ebias(half, 15);
+  std::vector<float> values;
+  for (size_t i = 0; i < voxels(kHdf5Size); ++i) values.push_back(float(i) / 4 - 50);
+  writeHdf5(path, "x", {kHdf5Shape, {}, half, H5T_NATIVE_FLOAT, 0, {}}, values.data());
+  H5Tclose(half);
+  const auto image = openImage(path);
+  CHECK(image->info().type == SampleType::float32);
+  const std::string bytes = readAll(*image, 2);
+  REQUIRE(bytes.size() == 4 * values.size());
+  CHECK(std::memcmp(bytes.data(), values.data(), bytes.size()) == 0);
+}
+
+TEST_CASE("image_hdf5: axes that are called otherwise than z, y, x are refused", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kHdf5Size), 1);
+  for (const auto& [axes, isFine] :
+       {std::pair<std::array<const char*, 3>, bool>{{"z", "y", "x"}, true},
+        {{"x", "y", "z"}, false},
+        {{nullptr, nullptr, "time"}, true},
+        {{"Y", nullptr, nullptr}, false}}) {
+    const hid_t file = newHdf5(path);
+    addHdf5(file, "d", {kHdf5Shape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, bytes.data());
+    const hid_t dataset = H5Dopen2(file, "d", H5P_DEFAULT), text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, H5T_VARIABLE);
+    const hsize_t count = 3;
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t labels =
+        H5Acreate2(dataset, "DIMENSION_LABELS", text, space, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(labels, text, axes.data());
+    H5Aclose(labels);
+    H5Sclose(space);
+    H5Tclose(text);
+    H5Dclose(dataset);
+    H5Fclose(file);
+    if (isFine)
+      CHECK(readAll(*openImage(path)) == bytes);
+    else
+      CHECK_THROWS_WITH(openImage(path), Contains("its axes are called"));
+  }
+}
+
 TEST_CASE("image_hdf5: 64-bit labels and h5py's bool", "[image_hdf5]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.h5";

@@ -287,13 +287,25 @@ TEST_CASE("image_file: TIFF voxel size as OME writes it", "[image_file]") {
   CHECK_THROWS_WITH(size("SizeT='2'"), Contains("several times"));
   CHECK_THROWS_WITH(open("<OME><Pixels SizeZ='4'/></OME>"), Contains("3 of the 4 slices"));
   CHECK_THROWS_WITH(open("<OME><Pixels /><Pixels /></OME>"), Contains("several images"));
+  const auto planes = [&](const std::string& data) {
+    return open("<OME><Pixels SizeZ='3'>" + data + "</Pixels></OME>");
+  };
+  CHECK_NOTHROW(planes("<TiffData/>"));
+  CHECK_NOTHROW(planes("<TiffData IFD='0' PlaneCount='3'/>"));
+  CHECK_NOTHROW(planes("<TiffData FirstZ='0' IFD='0'/><TiffData IFD='2' FirstZ='2'/>"));
+  for (const std::string other :
+       {"<TiffData IFD='1' PlaneCount='2'/>", "<TiffData IFD='0'/><TiffData FirstZ='2' IFD='1'/>",
+        "<TiffData IFD='?'/>"})
+    CHECK_THROWS_WITH(planes(other), Contains("in another order than its pages"));
+  open("<OME><Pixels SizeZ='2'/></OME>");
+  CHECK_THAT(openImage(path)->notes().at(0), Contains("describes 2 slices, and it has 3"));
   // A text that ends anywhere is read as far as it goes.
   const std::string whole = "<OME><Pixels SizeZ=\"3\" " + x + y + z + "/></OME>";
   for (size_t length = 1; length < whole.size(); ++length)
     CHECK_NOTHROW(open(whole.substr(0, length)));
 }
 
-TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behind it",
+TEST_CASE("image_file: large stacks of ImageJ and truncated ones of tifffile have one page",
           "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
@@ -302,7 +314,10 @@ TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behin
   TiffLayout layout;
   layout.mode = "wb";
   layout.rowsPerStrip = 1000;
-  layout.description = "ImageJ=1.52a\nimages=3\nslices=3\n";
+  const std::string shape = std::to_string(kTiffSize.z) + ", " + std::to_string(kTiffSize.y) +
+                            ", " + std::to_string(kTiffSize.x);
+  layout.description = GENERATE_COPY(std::string("ImageJ=1.52a\nimages=3\nslices=3\n"),
+                                     "{\"truncated\": true, \"shape\": [" + shape + "]}");
   writeTiff(path, slice, SampleType::uint16, bytes.substr(0, bytes.size() / 3), layout);
   CHECK(openImage(path)->info().size.z == 1);  // one slice that kept its description
 

@@ -149,6 +149,17 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   CHECK(openImage(path)->info().voxelSize->edge() == 17e-6);
   write(omeAttributes("millimeter", 0.25));
   CHECK(openImage(path)->info().voxelSize->edge() == 0.25e-3);
+  std::string turned = omeAttributes("micrometer", 8.5);
+  for (const auto& [from, to] :
+       {std::pair{"\"z\"", "\"?\""}, {"\"x\"", "\"z\""}, {"\"?\"", "\"x\""}})
+    turned.replace(turned.find(from), 3, to);
+  write(turned);
+  CHECK_THROWS_WITH(openImage(path), Contains("its axes are called 'x', 'y', 'z'"));
+  write(omeAttributes("micrometer", 8.5));
+  writeFile(path + "/0/.zattrs", R"({"_ARRAY_DIMENSIONS": ["x", "y", "z"]})");
+  CHECK_THROWS_WITH(openImage(path), Contains("its axes are called 'x', 'y', 'z'"));
+  writeFile(path + "/0/.zattrs", R"({"_ARRAY_DIMENSIONS": ["z", "y", "x"]})");
+  CHECK_NOTHROW(openImage(path));
   write(omeAttributes("", 8.5));
   CHECK_FALSE(openImage(path)->info().voxelSize);
   write("{}");

@@ -18,8 +18,8 @@ class ArrayLike3D(Protocol):
     """What can be read: numpy arrays in any order of bytes and strides, numpy.memmap, h5py, zarr,
     dask, xarray.
 
-    It has three axes, [z, y, x], and `array[first:stop]` are slices. Where `array.dims` calls the
-    axes "x", "y" and "z", as xarray does, they may come in any order."""
+    It has three axes, [z, y, x], and `array[first:stop]` are slices. Where it calls its axes "x",
+    "y" and "z", as xarray does (`array.dims`) and h5py and zarr may, they may come in any order."""
 
     @property
     def shape(self) -> Tuple[int, ...]: ...
@@ -68,9 +68,7 @@ def dense(array: Any) -> npt.NDArray[Any]:
 
 def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
     """Which of its axes are z, y and x, of an array that names them all in another order."""
-    dims = getattr(array, "dims", None)
-    if not isinstance(dims, tuple):  # the names of h5py are no tuple, and mostly empty
-        return None
+    dims = _names_of_axes(array)
     names = [str(name).lower() for name in dims]
     if not any(name in ("x", "y", "z") and name != usual for name, usual in zip(names, "zyx")):
         return None
@@ -78,6 +76,19 @@ def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
         raise ValueError(f"the axes are called {', '.join(map(str, dims))}: call all three x, y "
                          "and z, or bring them into the order z, y, x")
     return names.index("z"), names.index("y"), names.index("x")
+
+
+def _names_of_axes(array: Any) -> Tuple[Any, ...]:
+    """As xarray, h5py and zarr have them; () of an array that names none."""
+    dims = getattr(array, "dims", None)
+    if isinstance(dims, tuple):
+        return dims
+    if dims is not None and hasattr(array, "file"):  # h5py
+        return tuple(getattr(dim, "label", "") for dim in dims)
+    named = getattr(getattr(array, "metadata", None), "dimension_names", None)  # Zarr 3
+    if named is None and hasattr(array, "attrs"):
+        named = array.attrs.get("_ARRAY_DIMENSIONS")  # as xarray saves Zarr 2
+    return tuple(named) if isinstance(named, (list, tuple)) else ()
 
 
 def _target(dtype: np.dtype[Any]) -> np.dtype[Any]:

@@ -32,6 +32,7 @@ std::array<std::string, 3> lengthsIn(double unitsPerMetre, const std::array<doub
 
 std::optional<double> unitsPerMetre(const std::string& unit) {
   static const std::map<std::string, double> kUnits = {
+      {"angstrom", 1e10},  {"\u00c5", 1e10},   {"\u212b", 1e10},  // the letter, and the sign
       {"nm", 1e9},         {"nanometer", 1e9}, {"nanometre", 1e9},
       {"um", 1e6},         {"micron", 1e6},    {"micrometer", 1e6},
       {"micrometre", 1e6}, {"\u00b5m", 1e6},  // micro sign, UTF-8

@@ -11,6 +11,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/lower_case.h"
 
 namespace vdb_madf::detail {
 
@@ -76,6 +77,22 @@ ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size)
                     " x " + std::to_string(size[2]) + " is not within 1 .. " +
                     std::to_string(kMaxImageSide) + " a side");
   return {int(size[0]), int(size[1]), int(size[2])};
+}
+
+void checkAxisNames(const std::string& path, const std::vector<std::string>& names) {
+  constexpr char kUsual[] = "zyx";
+  if (names.size() < 3) return;
+  const std::vector<std::string> last(names.end() - 3, names.end());
+  bool isUsual = true;
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string name = lowerCase(last[i]);
+    for (const char axis : {'x', 'y', 'z'})
+      if (name == std::string(1, axis)) isUsual = isUsual && axis == kUsual[i];
+  }
+  if (isUsual) return;
+  throw IoError(path + ": its axes are called " + inQuotes(last[0]) + ", " + inQuotes(last[1]) +
+                ", " + inQuotes(last[2]) +
+                ", and z, y, x is the order that is read: save it in that one");
 }
 
 void checkSlices(const std::string& path, const ImageInfo& info, int first, int count) {

@@ -40,6 +40,10 @@ void setSpacing(ImageInfo& info, const std::string& path, const std::array<doubl
 /// (ImageInfo::isPlaced)?
 bool isVoxelAway(double place, double edge);
 
+/// Names of axes, as far as a file gives them, the last of which is the fastest.
+/// @throw IoError if one of the last three is called x, y or z and is not where that one is read
+void checkAxisNames(const std::string& path, const std::vector<std::string>& names);
+
 /// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);
 

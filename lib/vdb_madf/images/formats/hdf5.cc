@@ -38,7 +38,7 @@ Hdf5Handle nativeType(hid_t dataset) {
   return Hdf5Handle(type ? H5Tget_native_type(type, H5T_DIR_ASCEND) : -1, H5Tclose);
 }
 
-/// Nothing for text, records, half floats ...
+/// Nothing for text, records ... Half floats are floats in memory.
 std::optional<StoredType> storedType(hid_t native) {
   H5T_class_t kind = H5Tget_class(native);
   Hdf5Handle base(H5Tcopy(native), H5Tclose);
@@ -185,6 +185,7 @@ class Hdf5Reader : public ImageReader {
     info_.size = sizeOf(path, name_, lengths_);
     info_.type = stored_.type;
     info_.format = "hdf5";
+    checkAxisNames(path, hdf5AxisNames(dataset_));
     info_.voxelSize = hdf5VoxelSize(path, file_, dataset_, names);
     checkStorage();
   }
@@ -219,7 +220,9 @@ class Hdf5Reader : public ImageReader {
     if (sources.isVirtual) return;
     const Hdf5Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
     if (!creation || H5Pget_layout(creation) != H5D_CHUNKED) {
-      if (held < bytes) fail("is cut short");
+      const Hdf5Handle type(H5Dget_type(dataset_), H5Tclose);
+      const uint64_t stored = type ? uint64_t(H5Tget_size(type)) : stored_.bytes();
+      if (held < bytes / stored_.bytes() * stored) fail("is cut short");
       return;
     }
     std::vector<hsize_t> chunk(lengths_.size(), 1);
@@ -249,8 +252,26 @@ class Hdf5Reader : public ImageReader {
         H5Sselect_hyperslab(file, H5S_SELECT_SET, begin.data(), nullptr, extent.data(), nullptr) <
             0 ||
         H5Dread(dataset_, native_, memory, file, H5P_DEFAULT, to) < 0)
-      fail("cannot be read from slice " + std::to_string(first) +
-           " on: it is damaged, or has a filter that is not installed");
+      fail("cannot be read from slice " + std::to_string(first) + " on: " + missingFilter());
+  }
+
+  /// Why the library may have failed.
+  std::string missingFilter() const {
+    const Hdf5Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
+    const int count = creation ? H5Pget_nfilters(creation) : 0;
+    for (int i = 0; i < count; ++i) {
+      constexpr size_t kMaxName = 64;
+      char name[kMaxName] = "";
+      unsigned flags = 0, config = 0;
+      size_t values = 0;
+      const H5Z_filter_t filter =
+          H5Pget_filter2(creation, unsigned(i), &flags, &values, nullptr, kMaxName, name, &config);
+      if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+      name[kMaxName - 1] = '\0';
+      return "its filter " + std::to_string(filter) + " " + inQuotes(name) +
+             " is not installed: save it with gzip, or without";
+    }
+    return "it is damaged";
   }
 
   Hdf5Handle file_;

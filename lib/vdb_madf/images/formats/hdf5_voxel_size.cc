@@ -72,6 +72,24 @@ std::optional<double> length(const std::string& path, hid_t file, const std::str
 
 }  // namespace
 
+std::vector<std::string> hdf5AxisNames(hid_t dataset) {
+  const char* const name = "DIMENSION_LABELS";
+  if (H5Aexists(dataset, name) <= 0) return {};
+  const Hdf5Handle attribute(H5Aopen(dataset, name, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(attribute ? H5Aget_space(attribute) : -1, H5Sclose);
+  const Hdf5Handle type(attribute ? H5Aget_type(attribute) : -1, H5Tclose);
+  const hssize_t count = space ? H5Sget_simple_extent_npoints(space) : 0;
+  if (!type || count < 1 || count > H5S_MAX_RANK || H5Tis_variable_str(type) <= 0) return {};
+  std::vector<char*> texts(size_t(count), nullptr);
+  if (H5Aread(attribute, type, texts.data()) < 0) return {};
+  std::vector<std::string> names;
+  for (char* const text : texts) {
+    names.emplace_back(text ? std::string(text, strnlen(text, kMaxUnit)) : std::string());
+    H5free_memory(text);
+  }
+  return names;
+}
+
 std::optional<VoxelSize> hdf5VoxelSize(const std::string& path, hid_t file, hid_t dataset,
                                        const std::vector<std::string>& names) {
   if (const auto size = elementSize(path, dataset)) return size;

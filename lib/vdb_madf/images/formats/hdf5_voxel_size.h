@@ -20,4 +20,7 @@ namespace vdb_madf::detail {
 std::optional<VoxelSize> hdf5VoxelSize(const std::string& path, hid_t file, hid_t dataset,
                                        const std::vector<std::string>& names);
 
+/// The labels of its dimensions, empty where one has none; nothing without any.
+std::vector<std::string> hdf5AxisNames(hid_t dataset);
+
 }  // namespace vdb_madf::detail

@@ -22,11 +22,11 @@ bool isSpace(char c) {
   return kSpace.find(c) != std::string::npos;
 }
 
-/// Where the next element Pixels has its attributes; npos if there is none. (A prefix of a
+/// Where the next element of a name has its attributes; npos if there is none. (A prefix of a
 /// namespace, "ome:", may precede the name.)
-size_t nextPixels(const std::string& xml, size_t from) {
-  for (size_t place = from; (place = xml.find("Pixels", place)) != std::string::npos; ++place) {
-    const size_t end = place + 6, begin = place - std::min(place, kMaxPrefix);
+size_t nextElement(const std::string& xml, const std::string& name, size_t from) {
+  for (size_t place = from; (place = xml.find(name, place)) != std::string::npos; ++place) {
+    const size_t end = place + name.size(), begin = place - std::min(place, kMaxPrefix);
     const std::string before = xml.substr(begin, place - begin);
     const size_t open = before.rfind('<');
     if (end >= xml.size() || !isSpace(xml[end]) || open == std::string::npos) continue;
@@ -70,8 +70,17 @@ OmePixels::OmePixels(const std::string& description) {
   if (description.find("<OME") == std::string::npos &&
       description.find(":OME") == std::string::npos)
     return;
-  for (size_t place = 0; (place = nextPixels(description, place)) != std::string::npos;)
+  for (size_t place = 0; (place = nextElement(description, "Pixels", place)) != std::string::npos;)
     if (++images_ == 1) attributes_ = attributesAt(description, place);
+  for (size_t place = 0;
+       (place = nextElement(description, "TiffData", place)) != std::string::npos;) {
+    const auto planes = attributesAt(description, place);
+    const auto page = planes.find("IFD"), slice = planes.find("FirstZ");
+    if (page == planes.end()) continue;
+    const auto numbers = integers(page->second),
+               slices = integers(slice == planes.end() ? "0" : slice->second);
+    isInOrder_ = isInOrder_ && numbers && numbers == slices;
+  }
 }
 
 int64_t OmePixels::size(const std::string& axis) const {

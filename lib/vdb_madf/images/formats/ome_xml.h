@@ -21,6 +21,9 @@ class OmePixels {
 
   /// Elements Pixels, one for each image of the file; 0: no OME-XML.
   int images() const { return images_; }
+  /// True unless an element TiffData says that slices begin elsewhere than at the page of their
+  /// number.
+  bool isInOrder() const { return isInOrder_; }
   /// SizeZ, SizeC, SizeT; 1 if it is not a number.
   int64_t size(const std::string& axis) const;
   /// PhysicalSizeX, Y and Z with their units (micrometers by default). Nothing without all three.
@@ -31,6 +34,7 @@ class OmePixels {
   std::string attribute(const std::string& name, const std::string& otherwise) const;
 
   int images_ = 0;
+  bool isInOrder_ = true;
   std::map<std::string, std::string> attributes_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/images/formats/tiff.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -96,6 +97,25 @@ void checkOme(const TiffFile& file, const OmePixels& ome, uint16_t channels, int
     file.handle().fail("holds " + std::to_string(slices) + " of the " +
                        std::to_string(ome.size("Z")) +
                        " slices that it describes: the others are in other files; save one stack");
+  if (!ome.isInOrder())
+    file.handle().fail(
+        "has its slices in another order than its pages, by its TiffData, or only in "
+        "some of them: save one stack");
+}
+
+/// How many slices tifffile wrote behind one page, where its description says that it did; else 1.
+double truncatedSlices(const TiffFile& file, const TiffPage& page) {
+  const std::string text = description(file), key = "\"shape\": [";
+  const size_t begin = text.find(key), end = text.find(']', begin);
+  if (text.compare(0, 1, "{") != 0 || begin == std::string::npos || end == std::string::npos ||
+      text.find("\"truncated\": true") == std::string::npos)
+    return 1;
+  std::string shape = text.substr(begin + key.size(), end - begin - key.size());
+  std::replace(shape.begin(), shape.end(), ',', ' ');
+  double samples = 1;
+  for (const int64_t length : integers(shape).value_or(std::vector<int64_t>()))
+    samples *= double(length);
+  return samples / (double(page.width) * double(page.height));
 }
 
 void rejectHyperstack(const TiffFile& file, const KeyValueHeader& imageJ) {
@@ -127,11 +147,16 @@ class TiffStack : public ImageReader {
     const KeyValueHeader imageJ = imageJDescription(file_);
     rejectHyperstack(file_, imageJ);
     int64_t slices = int64_t(pages_.size());
-    if (slices == 1) slices = slicesWithoutPages(imageJ);
+    if (slices == 1)
+      slices =
+          slicesWithoutPages(numberIn(imageJ, "images").value_or(truncatedSlices(file_, page_)));
     info_.size = checkedSize(path_, {page_.width, page_.height, slices});
     info_.type = page_.type;
     const OmePixels ome(description(file_));
     checkOme(file_, ome, page_.channels, slices);
+    if (ome.size("Z") > 1 && ome.size("Z") < slices)
+      notes_.push_back(path_ + ": its header describes " + std::to_string(ome.size("Z")) +
+                       " slices, and it has " + std::to_string(slices) + ": all are taken");
     setCalibration(info_, file_, imageJ, ome, info_.size.z);
     info_.format = "tiff";
     if (whiteIsZero_ > 0) notes_.push_back(whiteIsZeroNote(path_, whiteIsZero_, pages_.size()));
@@ -170,9 +195,9 @@ class TiffStack : public ImageReader {
     return page;
   }
 
-  /// ImageJ's stacks of 4 GB and more: one page, "images=N", the samples of all in one piece.
-  int64_t slicesWithoutPages(const KeyValueHeader& imageJ) {
-    const double images = numberIn(imageJ, "images").value_or(1);
+  /// Of ImageJ's stacks of 4 GB and more and tifffile's truncated ones: one page, and the samples
+  /// of so many images in one piece.
+  int64_t slicesWithoutPages(double images) {
     if (!(images > 1) || images > kMaxImageSide || !page_.plain) return 1;
     const auto offset = file_.contiguousOffset(page_);
     if (!offset) return 1;

@@ -20,8 +20,8 @@ namespace vdb_madf::detail {
 // samples do the same.) Of files where 0 is white there is a note: viewers show them inverted.
 // Pages marked as thumbnails or transparency masks are ignored.
 
-/// Each page is a slice; or, as ImageJ writes stacks of 4 GB and more, one page that is followed by
-/// the others' samples.
+/// Each page is a slice; or, as ImageJ writes stacks of 4 GB and more and tifffile with `truncate`,
+/// one page is followed by the others' samples.
 std::unique_ptr<ImageReader> openTiff(std::unique_ptr<InputFile> file);
 
 /// Each .tif or .tiff file of the folder is a slice, ordered by name with numbers compared as

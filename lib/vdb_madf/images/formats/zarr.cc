@@ -103,6 +103,9 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   const Json& transformations = member(*dataset, "coordinateTransformations");
   const Json& axes = axesOf(image, transformations);
   if (!axes.is_array() || axes.size() != axesCount) return std::nullopt;
+  std::vector<std::string> names;
+  for (const Json& axis : axes) names.push_back(textOf(member(axis, "name")));
+  checkAxisNames(name, names);
   if (transformations.is_null()) return std::nullopt;  // before version 0.4
   std::vector<double> scale(axesCount, 1.0);
   // Since version 0.6 what is said of all scales leads from these axes to others.
@@ -123,6 +126,21 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   if (units[0] != units[1] || units[0] != units[2])
     throw IoError(name + ": its axes have different units");
   return checkedVoxelSize(name, edges, units[0]);
+}
+
+/// The names that an array itself gives its axes, as xarray saves them.
+std::vector<std::string> ownAxisNames(const std::string& name, const fs::path& array) {
+  Json names;
+  if (isThere(array / ".zattrs"))
+    names =
+        member(jsonObjectWithoutLabels(name, (array / ".zattrs").string()), "_ARRAY_DIMENSIONS");
+  else if (isThere(array / "zarr.json"))
+    names =
+        member(jsonObjectWithoutLabels(name, (array / "zarr.json").string()), "dimension_names");
+  std::vector<std::string> texts;
+  if (names.is_array())
+    for (const Json& one : names) texts.push_back(textOf(one));
+  return texts;
 }
 
 /// Which array of a group is meant if none is named.
@@ -232,6 +250,7 @@ std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string
                   detail::inQuotes(dataset.empty() ? array.filename().string() : dataset) +
                   " in it");
   auto reader = std::make_unique<ZarrReader>(path, array.string());
+  checkAxisNames(path, ownAxisNames(path, array));
   addPlace(path, array, reader->axes(), reader->ownInfo());
   return reader;
 }
