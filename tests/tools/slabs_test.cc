@@ -185,6 +185,13 @@ TEST_CASE("slabs: what is finished is not done again to resume it", "[slabs]") {
   const Outcome again = bench.run(segment + "--resume");
   CHECK(again.exitCode == 0);
   CHECK_THAT(again.err, Contains("out.slabs: is finished"));
+  bench.mustRun(segment + "--resume -q --json again.json");
+  bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 8 -q --json first.json");
+  const Json first = Json::parse(bench.bytes("first.json")),
+             second = Json::parse(bench.bytes("again.json"));
+  for (const char* key : {"grains", "object_voxels", "critical_points", "slab_count", "input"})
+    CHECK(second.at(key) == first.at(key));
+  CHECK(second.at("output") == "out.slabs");
   for (const std::string other : {"--gamma 5", "--keep manifold", "--crop 0,0,0:9,9,9", "--invert",
                                   "--boundary closed", "--strictness 9", "--tidy 0"}) {
     const Outcome refused = bench.run(segment + "--resume " + other);

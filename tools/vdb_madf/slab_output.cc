@@ -228,6 +228,20 @@ void checkWhole(const std::string& path, Progress* progress) {
   }
 }
 
+/// Says that there is nothing to do, and what the folder knows of itself: not what its run took.
+void sayDone(const SegmentArguments& o, const Common& common, const std::string& why) {
+  common.progress->note(o.out + why);
+  JsonFile jsonFile(o.json);
+  std::ifstream file((std::filesystem::path(o.out) / kSlabIndex).string());
+  Json json = Json::parse(file, nullptr, false);
+  if (!json.is_object()) return;
+  json["slab_count"] = json["slabs"].size();
+  for (const char* ofIndex : {"format", "format_version", "slabs", "digest"}) json.erase(ofIndex);
+  json["output"] = o.out;
+  addNotes(json, *common.progress);
+  jsonFile.write(json);
+}
+
 void runInSlabs(const SegmentArguments& o, const Common& common) {
   Team alone;
   Team& team = common.team ? *common.team : alone;
@@ -238,7 +252,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     inAllMembers(team, [&] {
       if (team.member() == 0) checkWhole(o.out, common.progress);
     });
-    common.progress->note(o.out + ": is finished, there is nothing to go on with");
+    if (team.member() == 0) sayDone(o, common, ": is finished, there is nothing to go on with");
     return;
   }
   std::optional<JsonFile> jsonFile;
@@ -246,7 +260,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
   WorkPlace place(o, common, team);
   if (place.isDone()) {
     place.finish();
-    common.progress->note(o.out + ": was whole already");
+    if (team.member() == 0) sayDone(o, common, ": was whole already");
     return;
   }
   try {
