@@ -3,6 +3,7 @@
 """Meshes are those of the labels; files that are written are those of the command."""
 
 import gc
+import warnings
 
 import numpy as np
 import pytest
@@ -162,3 +163,23 @@ def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
     with pytest.raises((madf.InvalidInput, madf.IoError), match=text):
         labels.save(tmp_path / name, **arguments)
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_file_does_not_hold_is_a_warning(tmp_path):
+    array = np.zeros((20, 20, 20), np.int32)
+    array[5:15, 5:15, 5:15] = 1
+    round_ = madf.segment(array, phase=1, voxel_size="1x1x2um",
+                          roi=madf.Cylinder("z", (9.5, 9.5), 8)).labels
+    for name, texts in [("a.tif", ["where the region ends", "begins at voxel 2,2,0"]),
+                        ("a.npy", ["no cubes", "where the region ends", "begins at voxel 2,2,0"]),
+                        ("a.nrrd", ["where the region ends"]), ("a.vti", ["where the region ends"]),
+                        ("a.zarr", ["where the region ends"]), ("a.vdb", [])]:
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            round_.save(tmp_path / name)
+        said = [str(one.message) for one in heard]
+        assert len(said) == len(texts), (name, said)
+        assert all(text in line for text, line in zip(texts, said)), (name, said)
+    mask = madf.Mask(array, phase=1, crop=np.s_[2:9, 0:20, 0:20])
+    with pytest.warns(UserWarning, match="begins at voxel 0,0,2"):
+        mask.save(tmp_path / "m.tif")

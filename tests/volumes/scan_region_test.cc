@@ -363,6 +363,7 @@ TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[sca
     CHECK_THAT(notes, Contains(file + ": outside of the region, " + std::to_string(leftOut) +
                                " labeled voxels left out"));
   }
+  options.note = nullptr;
   options.region.mask = folder / "missing.npy";
   CHECK_THROWS_WITH(loadLabels(folder / "l.npy", options), Contains("missing.npy"));
   options.region = {};

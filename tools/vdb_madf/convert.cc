@@ -30,6 +30,7 @@
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/image_losses.h"
 
 namespace vdb_madf::tools {
 
@@ -196,7 +197,7 @@ void copyAsImage(const ConvertArguments& o, const Common& common) {
   }
   const SampleType type = outputType(o).value_or(image->info().type);
   copyImage(o.out, *image, type, size, common.progress, origin);
-  noteLostEdges(o.out, areCubes, size, common);
+  note({lostEdges(o.out, areCubes, size)}, common);
   reportImage(o.out, "all values", toCoord(image->info().size), type, common);
 }
 

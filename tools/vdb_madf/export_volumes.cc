@@ -14,6 +14,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/volumes/image_losses.h"
 #include "vdb_madf/volumes/write_image.h"
 
 namespace vdb_madf::tools {
@@ -56,7 +57,7 @@ void exportPalabos(const ExportArguments& o, const Common& common, const Int32Gr
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeVti(o.out, labels, box, o.compress, common.progress);
-  noteLostRegion(o.out, labels, common);
+  note({lostRegion(o.out, labels)}, common);
   say(o, common, "cell data grain_id, " + sizeText(box));
 }
 
@@ -65,9 +66,7 @@ void exportMask(const ExportArguments& o, const Common& common, const Labels& la
   const Int32Grid& about = aboutOf(labels);
   const CoordBBox box = boxOf(about);
   writeMask(o, box, labels, common.progress);
-  noteLostEdges(o.out, hasCubicVoxels(about), storedVoxelSize(about), common);
-  noteLostRegion(o.out, about, common);
-  noteLostPlace(o.out, about, common);
+  note(lossesOf(o.out, about), common);
   say(o, common, "1 = grain, 0 = background, " + sizeText(box) + " of type uint8, x fastest");
 }
 
@@ -93,7 +92,7 @@ void exportZarr(const ExportArguments& o, const Common& common, const Labels& la
   options.mesh = meshOptions(o);
   options.meshReduction = reductionOf(o, aboutOf(labels));
   writeOmeZarr(o.out, labels, box, options, common.progress);
-  noteLostRegion(o.out, aboutOf(labels), common);
+  note({lostRegion(o.out, aboutOf(labels))}, common);
   say(o, common,
       fmt::format("OME-Zarr {}, the object and labels/grain, {}{}", o.ome, sizeText(box),
                   o.meshes ? "; meshes and measures for neuroglancer" : ""));

@@ -16,6 +16,7 @@
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/volumes/image_losses.h"
 #include "vdb_madf/volumes/label_type.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -49,9 +50,7 @@ void tellBox(const std::string& path, const CoordBBox& box, const Common& common
 
 void report(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
             SampleType type, const Common& common) {
-  noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
-  noteLostRegion(path, grid, common);
-  noteLostPlace(path, grid, common);
+  note(lossesOf(path, grid), common);
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
 }
 
@@ -152,34 +151,9 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
   report(path, *labels.about, box, chosen, common);
 }
 
-void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
-                   const Common& common) {
-  const std::string ending = fileEnding(path);
-  if (areCubes || (size && ending != ".raw" && ending != ".npy")) return;
-  common.progress->note(path +
-                        ": does not say that its voxels are no cubes: give their edges again "
-                        "where it is read (--voxel-size)");
-}
-
-void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, const Common& common) {
-  const auto domain = storedDomain(grid);
-  if (domain && !domain->isBox())
-    common.progress->note(path +
-                          ": does not say where the region ends: outside of it there is 0, as in "
-                          "pores (a .vdb says it)");
-}
-
-void noteLostPlace(const std::string& path, const openvdb::GridBase& grid, const Common& common) {
-  const std::string ending = fileEnding(path);
-  for (const char* hasPlace : {".mha", ".mhd", ".nrrd", ".nhdr"})
-    if (ending == hasPlace) return;
-  const auto domain = storedDomain(grid);
-  const Coord first = domain ? domain->box().min() : Coord(0);
-  if (first != Coord(0))
-    common.progress->note(fmt::format(
-        "{}: begins at voxel {},{},{} of the scan, and where it is read its first one is 0,0,0 "
-        "(a .vdb keeps the place)",
-        path, first.x(), first.y(), first.z()));
+void note(const std::vector<std::string>& notes, const Common& common) {
+  for (const std::string& text : notes)
+    if (!text.empty()) common.progress->note(text);
 }
 
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

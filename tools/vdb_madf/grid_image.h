@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command.h"
 #include "vdb_madf/grids/grid_types.h"
@@ -31,16 +32,8 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
                        const std::optional<SampleType>& type, const std::string& source,
                        const Common& common);
 
-/// A note if the image will not say that its voxels are no cubes.
-/// @param areCubes the voxels
-/// @param size unknown: there is nothing to write
-void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
-                   const Common& common);
-
-/// A note if a grid has a region, which no image holds.
-void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, const Common& common);
-/// A note if a grid does not begin at 0,0,0, and the image has no place for that.
-void noteLostPlace(const std::string& path, const openvdb::GridBase& grid, const Common& common);
+/// Notes, of which empty ones are none.
+void note(const std::vector<std::string>& notes, const Common& common);
 
 /// Says what samples an image has, unless the user wants to hear nothing.
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

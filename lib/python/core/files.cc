@@ -23,6 +23,7 @@
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/level_sets.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/image_losses.h"
 #include "vdb_madf/volumes/label_type.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -64,6 +65,17 @@ void saveImage(const std::string& path, const GridPtr& grid, const std::string& 
   write(call, [&](Interrupter* interrupter) {
     writeImage(path, *grid, shownBox(*grid), typeFor(*grid, type, asTiff), interrupter);
   });
+}
+
+/// What the command notes of such a file.
+std::vector<std::string> fileLosses(const std::string& path, const GridPtr& grid,
+                                    const std::string& kind) {
+  if (kind == "vti" || kind == "zarr") {
+    const std::string loss = lostRegion(path, *grid);
+    return loss.empty() ? std::vector<std::string>() : std::vector<std::string>{loss};
+  }
+  const bool isImage = kind == "labels" || kind == "mask";
+  return isImage && fileEnding(path) != ".vdb" ? lossesOf(path, *grid) : std::vector<std::string>();
 }
 
 void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,
@@ -186,6 +198,7 @@ void bindFiles(py::module_& m) {
   const auto path = py::arg("path"), labels = py::arg("labels"), call = py::arg("call");
   m.def("save_vdb", saveVdb, path, py::arg("grids"), call);
   m.def("save_image", saveImage, path, py::arg("grid"), py::arg("type"), py::arg("as_tiff"), call);
+  m.def("file_losses", fileLosses, path, py::arg("grid"), py::arg("kind"));
   m.def("save_mesh", saveMesh, path, py::arg("whole"), py::arg("meshed"), py::arg("smoothing"),
         py::arg("triangles"), call);
   m.def("save_vti", saveVti, path, labels, py::arg("compressed"), call);

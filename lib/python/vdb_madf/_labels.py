@@ -269,6 +269,7 @@ class Labels(Volume):
                 _core.save_picture(name, grid, size, azimuth, elevation, call)
             else:
                 _core.save_level_sets(name, grid, smoothing, kind == "surface", call)
+        warn(_core.file_losses(name, grid, kind))
 
     def _repr_png_(self) -> Optional[bytes]:
         """The picture that notebooks show."""

@@ -102,6 +102,7 @@ class Mask(Volume):
                 _core.save_vdb(name, [self._grid], call)
             else:
                 _core.save_image(name, self._grid, "", False, call)
+        warn(_core.file_losses(name, self._grid, "mask"))
 
     def __reduce__(self) -> Tuple[Callable[[bytes], "Mask"], Tuple[bytes]]:
         return _mask_from_vdb, (self._vdb(),)

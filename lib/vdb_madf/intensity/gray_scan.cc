@@ -75,14 +75,6 @@ GrayScan scanOfGrid(const std::string& path, const VolumeOptions& options,
   return {std::make_unique<GridReader>(path, grid, box), box.min()};
 }
 
-bool haveOtherEdges(const VoxelSize& a, const VoxelSize& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double p = a.edges()[axis], q = b.edges()[axis];
-    if (std::max(p, q) > std::min(p, q) * kMaxEdgeRatio) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 CoordBBox GrayScan::box() const {
@@ -116,7 +108,7 @@ std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& vox
     note =
         "is larger than the volume of the labels: taken for the scan that they were cropped from";
   const auto own = storedVoxelSize(about);
-  if (voxels && own && haveOtherEdges(*voxels, *own))
+  if (voxels && own && detail::haveOtherEdges(*voxels, *own))
     note +=
         fmt::format("{}has voxels of {}, and the labels of {}: their indices are compared",
                     note.empty() ? "" : "; ", detail::voxelText(*voxels), detail::voxelText(*own));

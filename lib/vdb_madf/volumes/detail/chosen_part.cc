@@ -16,6 +16,7 @@
 #include "vdb_madf/scans/detail/field_of_view.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/detail/volume_notes.h"
 #include "vdb_madf/volumes/load_object.h"
 
 namespace vdb_madf::detail {
@@ -26,6 +27,7 @@ namespace {
 struct ScanExtent {
   std::optional<Domain> domain;
   CoordBBox box;  ///< where the domain is unknown: of its voxels
+  std::optional<VoxelSize> voxelSize;
   /// As farthestFromAxis().
   std::function<double(const CylinderAxis&)> farthestFromAxis;
   /// Of a gray scan: the smallest circle across an axis that holds its field of view.
@@ -57,8 +59,10 @@ MaskGrid::ConstPtr readRegion(const VolumeOptions& options, Interrupter* interru
 }
 
 /// The region in a mask, which has to cover the scan as far as both say how large they are.
+/// @param voxels of the scan
 Domain maskRegion(const std::string& path, const VolumeOptions& options,
-                  const std::optional<Domain>& scan, Interrupter* interrupter) {
+                  const std::optional<Domain>& scan, const std::optional<VoxelSize>& voxels,
+                  Interrupter* interrupter) {
   const RegionOptions& region = options.region;
   const MaskGrid::ConstPtr mask = region.grid ? region.grid : readRegion(options, interrupter);
   const std::string name = region.grid ? "the region" : region.mask;
@@ -71,6 +75,12 @@ Domain maskRegion(const std::string& path, const VolumeOptions& options,
         name, sizeText(known->box()), path, sizeText(scan->box())));
   if (known && scan && known->box() != scan->box() && !region.crop && options.note)
     options.note(name + ": is larger than " + path + "; voxels of equal index belong together",
+                 NoteAbout::file);
+  const auto own = storedVoxelSize(*mask);
+  if (own && voxels && haveOtherEdges(*own, *voxels) && options.note)
+    options.note(fmt::format("{}: has voxels of {}, and {} of {}: voxels of equal index belong "
+                             "together",
+                             name, voxelText(*own), path, voxelText(*voxels)),
                  NoteAbout::file);
   return Domain(mask->tree());
 }
@@ -126,6 +136,27 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   return cylinder;
 }
 
+/// From here on a side of a crop is one that nobody gave.
+constexpr int kOpenSide = 1 << 20;
+
+/// Says if a crop reaches beyond the scan.
+void noteClipped(const std::string& path, const VolumeOptions& options, const ScanExtent& extent) {
+  if (!extent.domain || !options.note) return;
+  const CoordBBox &crop = *options.region.crop, &scan = extent.domain->box();
+  if (!crop.hasOverlap(scan)) return;  // that there is no voxel is said anyway
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = crop.min()[axis], high = crop.max()[axis];
+    const bool isBeyond = (low < scan.min()[axis] && low > -kOpenSide) ||
+                          (high > scan.max()[axis] && high < kOpenSide - 1);
+    if (!isBeyond) continue;
+    options.note(fmt::format("{}: the crop reaches beyond the scan along {}, which goes from {} to "
+                             "{} there: what lies outside is left out",
+                             path, kAxes[axis], scan.min()[axis], scan.max()[axis]),
+                 NoteAbout::file);
+    return;
+  }
+}
+
 ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const ScanExtent& extent,
                     Interrupter* interrupter) {
   ScanPart part;
@@ -133,10 +164,12 @@ ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const
   const auto narrow = [&](const Domain& to) { domain = domain ? domain->within(to) : to; };
   if (const auto& crop = options.region.crop) {
     part.box = *crop;
+    noteClipped(path, options, extent);
     narrow(*crop);
   }
   if (!options.region.mask.empty() || options.region.grid)
-    narrow(maskRegion(path, options, domain, interrupter));
+    narrow(maskRegion(path, options, domain,
+                      options.voxelSize ? options.voxelSize : extent.voxelSize, interrupter));
   if (options.region.cylinder) {
     const CoordBBox whole = extent.domain ? extent.domain->box() : extent.box;
     if (whole.empty()) throw InvalidInput(path + ": holds no voxel to put a cylinder around");
@@ -154,6 +187,7 @@ std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
   if (!options.region.any()) return std::nullopt;
   ScanExtent extent;
   extent.domain = storedDomain(grid);
+  extent.voxelSize = storedVoxelSize(grid);
   const auto& cylinder = options.region.cylinder;
   if (cylinder && !(cylinder->radius && extent.domain)) {  // else nothing depends on its voxels
     const MaskGrid::Ptr voxels = objectMask(grid);
@@ -181,6 +215,7 @@ std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions
   ScanExtent extent;
   extent.domain = Domain(options.domain.value_or(box));
   extent.box = box;
+  extent.voxelSize = image->info().voxelSize;
   extent.farthestFromAxis = [&](const CylinderAxis& axis) {
     return farthestFromAxis(rimAlong(axis.axis), axis);
   };

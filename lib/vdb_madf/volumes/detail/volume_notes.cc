@@ -6,10 +6,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/limits.h"
 
 namespace vdb_madf::detail {
 
@@ -31,6 +33,14 @@ std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
 }
 
 }  // namespace
+
+bool haveOtherEdges(const VoxelSize& a, const VoxelSize& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double p = a.edges()[axis], q = b.edges()[axis];
+    if (std::max(p, q) > std::min(p, q) * kMaxEdgeRatio) return true;
+  }
+  return false;
+}
 
 std::string voxelText(const VoxelSize& size) {
   const double longest = *std::max_element(size.edges().begin(), size.edges().end());
@@ -54,6 +64,20 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
       fmt::format("{}: the file says that a voxel is {} long; {}, {}, was given and is taken", path,
                   voxelText(*ofFile), voxelText(*options.voxelSize), times),
       NoteAbout::voxelSize);
+}
+
+void noteProportions(const std::string& path, const openvdb::GridBase& grid,
+                     const VolumeOptions& options) {
+  if (!options.note || !options.voxelSize || !grid["madf_gamma"]) return;
+  const openvdb::Vec3d own = grid.voxelSize();
+  std::array<double, 3> ratios;
+  for (size_t axis = 0; axis < 3; ++axis)
+    ratios[axis] = options.voxelSize->edges()[axis] / own[int(axis)];
+  if (areEdgesOfCube(ratios)) return;
+  options.note(path +
+                   ": was segmented in voxels of other proportions, which give other grains: "
+                   "segment the object anew",
+               NoteAbout::voxelSize);
 }
 
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,

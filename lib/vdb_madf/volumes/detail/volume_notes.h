@@ -11,6 +11,9 @@
 
 namespace vdb_madf::detail {
 
+/// Some edge differs by more than 0.1 % (kMaxEdgeRatio).
+bool haveOtherEdges(const VoxelSize& a, const VoxelSize& b);
+
 /// "8.5 um", "0.5 x 0.5 x 1.2 um", to four digits.
 std::string voxelText(const VoxelSize& size);
 
@@ -18,6 +21,10 @@ std::string voxelText(const VoxelSize& size);
 /// another sample's size.
 void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
                    const VolumeOptions& options);
+
+/// Notes that a segmentation which is given voxels of other proportions was made in its own.
+void noteProportions(const std::string& path, const openvdb::GridBase& grid,
+                     const VolumeOptions& options);
 
 /// Notes how many voxels of a kind lie outside of the region, if any do.
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,

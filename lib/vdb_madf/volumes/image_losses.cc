@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/image_losses.h"
+
+#include <fmt/core.h>
+
+#include "vdb_madf/files/file_name.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+namespace vdb_madf {
+
+std::string lostEdges(const std::string& path, bool areCubes,
+                      const std::optional<VoxelSize>& size) {
+  const std::string ending = fileEnding(path);
+  if (areCubes || (size && ending != ".raw" && ending != ".npy")) return "";
+  return path +
+         ": does not say that its voxels are no cubes: give their edges again where it is read "
+         "(--voxel-size)";
+}
+
+std::string lostRegion(const std::string& path, const openvdb::GridBase& grid) {
+  const auto domain = storedDomain(grid);
+  if (!domain || domain->isBox()) return "";
+  return path +
+         ": does not say where the region ends: outside of it there is 0, as in pores (a .vdb says "
+         "it)";
+}
+
+std::string lostPlace(const std::string& path, const openvdb::GridBase& grid) {
+  const std::string ending = fileEnding(path);
+  for (const char* hasPlace : {".mha", ".mhd", ".nrrd", ".nhdr"})
+    if (ending == hasPlace) return "";
+  const auto domain = storedDomain(grid);
+  const Coord first = domain ? domain->box().min() : Coord(0);
+  if (first == Coord(0)) return "";
+  return fmt::format(
+      "{}: begins at voxel {},{},{} of the scan, and where it is read its first one is 0,0,0 (a "
+      ".vdb keeps the place)",
+      path, first.x(), first.y(), first.z());
+}
+
+std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid) {
+  std::vector<std::string> losses;
+  for (const std::string& loss : {lostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid)),
+                                  lostRegion(path, grid), lostPlace(path, grid)})
+    if (!loss.empty()) losses.push_back(loss);
+  return losses;
+}
+
+}  // namespace vdb_madf

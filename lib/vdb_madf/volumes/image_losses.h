@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+// What an image file cannot hold of a volume, as notes for the user, each of which begins with the
+// path; empty if nothing is lost.
+
+/// Says that its voxels are no cubes.
+/// @param size unknown: there is nothing to write
+std::string lostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size);
+
+/// Says where the region of a grid ends.
+std::string lostRegion(const std::string& path, const openvdb::GridBase& grid);
+
+/// Says where in the scan the first voxel of a grid lies, if that is not 0,0,0.
+std::string lostPlace(const std::string& path, const openvdb::GridBase& grid);
+
+/// Lists all of these that there are.
+std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid);
+
+}  // namespace vdb_madf
