@@ -192,3 +192,10 @@ def test_files_that_are_not_there(tmp_path):
         madf.segment(tmp_path / "nothing.tif")
     with pytest.raises(OSError):
         madf.Labels(tmp_path / "nothing.vdb")
+
+
+def test_a_slice_with_a_closed_boundary_is_a_warning():
+    slice_ = np.zeros((1, 20, 20), np.uint8)
+    slice_[0, 5:15, 5:15] = 1
+    with pytest.warns(UserWarning, match="one voxel along z"):
+        madf.segment(slice_, phase=1, boundary="closed")

@@ -221,3 +221,11 @@ TEST_CASE("cli: values that are no finite numbers are counted", "[cli]") {
                                             "scanned background: if they are around a round"));
   CHECK_THAT(said, vdb_madf::test::Contains("a.raw: has 1 voxel of infinite value"));
 }
+
+TEST_CASE("cli: a slice with a closed boundary is said", "[cli]") {
+  const Bench bench;
+  bench.write("a.raw", std::string("\1\0\1\1", 4));
+  const std::string segment = "segment a.raw s.vdb --dims 2x2x1 --type uint8 --boundary ";
+  notes(bench, segment + "closed", {"a.raw: one voxel along z, and a closed boundary has"});
+  bench.mustRun(segment + "open");
+}

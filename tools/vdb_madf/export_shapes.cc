@@ -211,7 +211,8 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
   if (without > 0) text += fmt::format("; {} without a ball", counted(without, "grain"));
   if (!o.bonds.empty()) text += fmt::format("; {} in {}", counted(bonds.size(), "bond"), o.bonds);
   // Distances ignore what may be beyond the faces of an open scan.
-  if (storedBoundary(*balls) == Boundary::open)
+  const auto domain = storedDomain(labels);
+  if (storedBoundary(*balls) == Boundary::open && !(domain && domain->flatAxis()))
     text += "; balls reach beyond the scan (segment with --boundary closed to prevent that)";
   say(o, common, text);
 }

@@ -320,14 +320,16 @@ void addBoundary(Verb verb, std::string& boundary) {
       .showDefault();
 }
 
-Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
-                    const MaskGrid& object) {
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object,
+                    Progress* progress) {
   Boundary result = parseBoundary(boundary);
   if (result == Boundary::automatic) result = storedBoundary(object);
   if (result == Boundary::open && !storedDomain(object))
     throw InvalidInput(input.path +
                        ": its domain is unknown, so the boundary cannot be open: use --boundary "
                        "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  const std::string note = noteOnBoundary(result, storedDomain(object));
+  if (!note.empty()) progress->note(input.path + ": " + note);
   return result;
 }
 

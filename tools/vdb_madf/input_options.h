@@ -111,7 +111,8 @@ auto withFileName(const std::string& path, const Work& work) -> decltype(work())
 void addBoundary(Verb verb, std::string& boundary);
 /// What --boundary says of an object: where it is `auto`, what the object's file says.
 /// @throw InvalidInput if it is open and the domain is unknown.
-Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object,
+                    Progress* progress);
 
 /// Adds --density and --ice, for parseDensity().
 void addDensity(Verb verb, std::string& density, bool& ice);

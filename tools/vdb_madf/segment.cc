@@ -159,7 +159,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   common.progress->start("read");
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SegmentOptions options = o.segment;
-  options.boundary = boundaryOf(o.boundary, o.input, *object);
+  options.boundary = boundaryOf(o.boundary, o.input, *object, common.progress);
   timing.read = secondsSince(start);
   requireTableUnit(o.unit, storedVoxelSize(*object));
 

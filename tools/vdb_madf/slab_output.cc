@@ -151,7 +151,7 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Team& team, Wo
                                                  : readSlabs(o, common, place);
   timing.read = secondsSince(start);
   SegmentOptions options = o.segment;
-  options.boundary = boundaryOf(o.boundary, o.input, *about);
+  options.boundary = boundaryOf(o.boundary, o.input, *about, common.progress);
   options.maxMemory = 0;
   const SlabObject object = storedSlabs(place.scratch(), about);
   place.checkSlabs(object.slabCount());
@@ -208,7 +208,7 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
       },
       {}, common.progress);
   builder.finish(storedDomain(*about));
-  boundaryOf(o.boundary, o.input, *about);
+  boundaryOf(o.boundary, o.input, *about, common.progress);
   estimate.memory = kSlabOtherBytes + builder.largestSlabBytes();
   estimate.slabs = int64_t(builder.slabCount());
   estimate.scratch = estimate.voxels * (o.segment.gamma > 0 ? kFilteredScratch : kScratch);

@@ -249,7 +249,7 @@ std::vector<SweepRow> sweepObject(const SweepArguments& o, const Common& common)
   refuseScratch(o);
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SweepOptions options = o.sweep;
-  options.boundary = boundaryOf(o.boundary, o.input, *object);
+  options.boundary = boundaryOf(o.boundary, o.input, *object, common.progress);
   options.maxMemory = availableMemory();
   return withFileName(o.input.path,
                       [&] { return parameterSweep(*object, options, common.progress); });

@@ -313,6 +313,12 @@ Boundary boundaryOf(const std::string& name) {
 }
 
 void bindMethod(py::module_& m) {
+  m.def(
+      "note_on_boundary",
+      [](const GridPtr& object, const std::string& boundary) {
+        return noteOnBoundary(boundaryOf(boundary), storedDomain(*object));
+      },
+      py::arg("object"), py::arg("boundary"));
   m.def("segment", segmentMask, py::arg("mask"), py::arg("call"), py::kw_only(), py::arg("merging"),
         py::arg("gamma"), py::arg("fill_holes"), py::arg("tidy"), py::arg("boundary"),
         py::arg("keep"), py::arg("max_memory"));

@@ -223,8 +223,8 @@ class Labels(Volume):
         - "sandatlas": a folder that is not there yet, for the Sand Atlas: voxels, meshes
           (`smoothing`) and measures of each grain
         - "clumps": .txt (YADE), .data (LAMMPS), .csv, or a folder that is not there yet
-          (MercuryDPM): grains as balls, `max_balls` each, `uncovered` part of them, `apart` if
-          balls of different grains shall not overlap
+          (MercuryDPM): grains as medial balls, computed with closed faces, `max_balls` each,
+          `uncovered` part of them, `apart` if balls of different grains shall not overlap
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for
           renderers
         - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,

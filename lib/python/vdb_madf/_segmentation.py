@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import checked
 from ._arrays import Source
-from ._calls import Progress, bytes_of, calling
+from ._calls import Progress, bytes_of, calling, warn
 from ._choices import Box
 from ._labels import Labels
 from ._mask import Mask, Region
@@ -240,6 +240,8 @@ def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, 
         made = _core.segment(
             mask._grid, call, merging=merging, gamma=gamma, fill_holes=fill_holes, tidy=tidy,
             boundary=boundary, keep=list(keep), max_memory=allowed)
+    note = _core.note_on_boundary(mask._grid, boundary)
+    warn([note] if note else [])
     volumes = {name: None if made[name] is None else Labels._of(made[name])
                for name in ("manifold", "distance_squared", "power")}
     return Segmentation(labels=Labels._of(made["labels"]), counts=made["counts"],

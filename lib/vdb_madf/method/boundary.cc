@@ -48,6 +48,14 @@ Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
   return obstacles;
 }
 
+std::string noteOnBoundary(Boundary boundary, const std::optional<Domain>& domain) {
+  const auto axis = domain ? domain->flatAxis() : std::nullopt;
+  if (boundary != Boundary::closed || !axis) return "";
+  return std::string("one voxel along ") + "xyz"[*axis] +
+         ", and a closed boundary has background on both sides of it, so each voxel is a ball of "
+         "its own: leave it open";
+}
+
 Boundary storedBoundary(const openvdb::GridBase& grid) {
   const auto text = grid.getMetadata<openvdb::StringMetadata>(kBoundaryKey);
   if (!text) return Boundary::automatic;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
@@ -33,6 +34,10 @@ struct Obstacles {
 /// @throw InvalidInput: open without a domain, or voxels of `index` outside the domain.
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<Domain>& domain);
+
+/// Warns, as a sentence for the user, where a closed boundary leaves nothing of an object: in a
+/// domain of one voxel along an axis all of it is at a face. Empty elsewhere.
+std::string noteOnBoundary(Boundary boundary, const std::optional<Domain>& domain);
 
 /// The boundary that a grid says it wants or was segmented with (`madf_boundary`: "open",
 /// "closed"); automatic if it says nothing.
