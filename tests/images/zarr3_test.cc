@@ -202,6 +202,8 @@ TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   refused("\"attributes\"", "\"new\": {\"must_understand\": true}, \"attributes\"", "'new'");
   refused("\"attributes\"", "\"new\": 1, \"attributes\"", "'new'");
   refused("\"attributes\"", "\"storage_transformers\": [{}], \"attributes\"", "transformers");
+  refused("\"attributes\"", "\"dimension_names\": [\"x\", \"y\", \"z\"], \"attributes\"",
+          "its axes are called 'x', 'y', 'z'");
   refused("[9, 7, 11]", "[2, 9, 7, 11]", "2 volumes");
   refused("[9, 7, 11]", "[1, 9, 7, 11]", "numbers of axes");
   refused("[9, 7, 11]", "[7, 11]", "choose another array");

@@ -40,26 +40,25 @@ std::string unitOf(const openvdb::GridBase& grid) {
   return size ? size->unit() : std::string();
 }
 
-/// Says how many grains have no voxel any more where labels were reduced.
-template <typename Labels>
-void noteVanished(const ExportArguments& o, const Common& common, const Labels& labels,
+/// Says how many of the grains have no voxel any more where labels were reduced.
+void noteVanished(const ExportArguments& o, const Common& common, size_t grains,
                   const Int32Grid& reduced) {
-  const size_t grains = labelSizes(labels, common.progress).size(),
-               left = labelSizes(reduced, common.progress).size();
+  const size_t left = labelSizes(reduced, common.progress).size();
   if (left < grains)
     common.progress->note(fmt::format("{}: {} of {} are too small to be seen in reduced labels",
                                       o.out, grains - left, counted(grains, "grain")));
 }
 
 /// Labels as they are meshed: those of the chosen grains, reduced.
+/// @param grains how many the labels have
 template <typename Labels>
 Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
-                                 const Labels& labels, int factor) {
+                                 const Labels& labels, int factor, size_t grains) {
   Int32Grid::ConstPtr all;
   if constexpr (std::is_same_v<Labels, Int32Grid>)
     if (factor == 1) all = labels.copy();
   if (!all) all = reduceLabels(labels, factor, common.progress);
-  if (factor > 1) noteVanished(o, common, labels, *all);
+  if (factor > 1) noteVanished(o, common, grains, *all);
   return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
 }
 
@@ -106,15 +105,16 @@ template <typename Labels>
 void exportMesh(const ExportArguments& o, const Common& common, const Labels& labels) {
   const GrainMeshOptions options = meshOptions(o);
   const int factor = reductionOf(o, aboutOf(labels));
-  const Int32Grid::ConstPtr meshed = meshedLabels(o, common, labels, factor);
   MeshFileOptions file;
+  file.colors = grainColors(labels, common.progress);
+  const Int32Grid::ConstPtr meshed =
+      meshedLabels(o, common, labels, factor, file.colors.labels.size());
   file.transform = meshed->constTransformPtr();
   file.lengthUnit = unitOf(aboutOf(labels));
   file.shadeSmooth = o.smoothing > 0;
   if (isGlb(o.out) && options.triangles == 0)
     checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
   const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
-  file.colors = grainColors(labels, common.progress);
   std::optional<GrainNetwork> measured;
   if (isGlb(o.out)) file.measured = &measured.emplace(grainNetwork(labels, {}, common.progress));
   if (isMeshEnding(o.out))
@@ -144,7 +144,7 @@ template <typename Labels>
 void exportReduced(const ExportArguments& o, const Common& common, const Labels& labels) {
   const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, aboutOf(labels));
   const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
-  noteVanished(o, common, labels, *reduced);
+  noteVanished(o, common, labelSizes(labels, common.progress).size(), *reduced);
   writeVdb(o.out, {reduced}, common.progress);
   say(o, common,
       fmt::format("labels at 1/{}, {}", factor, counted(reduced->activeVoxelCount(), "voxel")));

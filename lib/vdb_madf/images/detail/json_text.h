@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/input_file.h"
@@ -63,6 +64,14 @@ inline const Json& member(const Json& json, const char* key) {
 
 inline std::string textOf(const Json& json) {
   return json.is_string() ? json.get<std::string>() : std::string();
+}
+
+/// The texts of a list, empty where a part is none; of no list none.
+inline std::vector<std::string> textsOf(const Json& json) {
+  std::vector<std::string> texts;
+  if (json.is_array())
+    for (const Json& part : json) texts.push_back(textOf(part));
+  return texts;
 }
 
 }  // namespace vdb_madf::detail

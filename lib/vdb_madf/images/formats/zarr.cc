@@ -128,19 +128,12 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   return checkedVoxelSize(name, edges, units[0]);
 }
 
-/// The names that an array itself gives its axes, as xarray saves them.
-std::vector<std::string> ownAxisNames(const std::string& name, const fs::path& array) {
-  Json names;
-  if (isThere(array / ".zattrs"))
-    names =
-        member(jsonObjectWithoutLabels(name, (array / ".zattrs").string()), "_ARRAY_DIMENSIONS");
-  else if (isThere(array / "zarr.json"))
-    names =
-        member(jsonObjectWithoutLabels(name, (array / "zarr.json").string()), "dimension_names");
-  std::vector<std::string> texts;
-  if (names.is_array())
-    for (const Json& one : names) texts.push_back(textOf(one));
-  return texts;
+/// Checks the names that xarray gives the axes of an array of version 2, in its attributes.
+void checkOwnAxes(const std::string& name, const fs::path& array) {
+  const fs::path attributes = array / ".zattrs";
+  if (isThere(attributes))
+    checkAxisNames(name, textsOf(member(jsonObjectWithoutLabels(name, attributes.string()),
+                                        "_ARRAY_DIMENSIONS")));
 }
 
 /// Which array of a group is meant if none is named.
@@ -250,7 +243,7 @@ std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string
                   detail::inQuotes(dataset.empty() ? array.filename().string() : dataset) +
                   " in it");
   auto reader = std::make_unique<ZarrReader>(path, array.string());
-  checkAxisNames(path, ownAxisNames(path, array));
+  checkOwnAxes(path, array);
   addPlace(path, array, reader->axes(), reader->ownInfo());
   return reader;
 }

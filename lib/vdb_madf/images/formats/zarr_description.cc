@@ -13,6 +13,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/json_text.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 
@@ -331,6 +332,7 @@ ZarrDescription readZarr3(const std::string& name, const std::string& path) {
   if (member(json, "zarr_format") != 3 || member(json, "node_type") != "array")
     throw IoError(name + ": its description zarr.json is not that of an array of Zarr version 3");
   checkKeys(name, json);
+  checkAxisNames(name, textsOf(member(json, "dimension_names")));
   ZarrDescription array;
   const Named grid = named(member(json, "chunk_grid"));
   if (grid.name != "regular")

@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
@@ -136,18 +137,16 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   return cylinder;
 }
 
-/// From here on a side of a crop is one that nobody gave.
-constexpr int kOpenSide = 1 << 20;
-
-/// Says if a crop reaches beyond the scan.
+/// Says if a crop reaches beyond the scan. A side that is farther away than scans are long is one
+/// that nobody gave.
 void noteClipped(const std::string& path, const VolumeOptions& options, const ScanExtent& extent) {
   if (!extent.domain || !options.note) return;
   const CoordBBox &crop = *options.region.crop, &scan = extent.domain->box();
   if (!crop.hasOverlap(scan)) return;  // that there is no voxel is said anyway
   for (int axis = 0; axis < 3; ++axis) {
     const int low = crop.min()[axis], high = crop.max()[axis];
-    const bool isBeyond = (low < scan.min()[axis] && low > -kOpenSide) ||
-                          (high > scan.max()[axis] && high < kOpenSide - 1);
+    const bool isBeyond = (low < scan.min()[axis] && low > -kMaxImageSide) ||
+                          (high > scan.max()[axis] && high < kMaxImageSide - 1);
     if (!isBeyond) continue;
     options.note(fmt::format("{}: the crop reaches beyond the scan along {}, which goes from {} to "
                              "{} there: what lies outside is left out",
