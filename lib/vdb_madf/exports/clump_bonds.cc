@@ -48,10 +48,13 @@ std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
                                   const std::vector<BondMeasures>& bonds,
                                   const openvdb::math::Transform& transform) {
   const openvdb::Vec3d edges = detail::proportions(transform);
-  std::vector<size_t> firstBalls;  // of each clump, among all balls
-  size_t count = 0;
+  // Of each clump: its number among those with balls, and that of its first ball among all.
+  std::vector<size_t> numbers, firstBalls;
+  size_t number = 0, count = 0;
   for (const Clump& clump : clumps) {
+    numbers.push_back(number);
     firstBalls.push_back(count);
+    number += !clump.balls.empty();
     count += clump.balls.size();
   }
   std::vector<ClumpBond> result;
@@ -61,8 +64,8 @@ std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
     if (clumps[first].balls.empty() || clumps[second].balls.empty()) continue;
     ClumpBond bond;
     chooseBalls(clumps[first], clumps[second], edges, bond);
-    bond.firstClump = first;
-    bond.secondClump = second;
+    bond.firstClump = numbers[first];
+    bond.secondClump = numbers[second];
     bond.firstBall += firstBalls[first];
     bond.secondBall += firstBalls[second];
     bond.measures = measures;

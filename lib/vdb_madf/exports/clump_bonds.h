@@ -15,7 +15,7 @@ namespace vdb_madf {
 /// A bond between two clumps, for bonded-particle models: what holds together which two balls.
 /// Lengths in shortest edges of a voxel.
 struct ClumpBond {
-  size_t firstClump = 0, secondClump = 0;  ///< places in the list of clumps, from 0
+  size_t firstClump = 0, secondClump = 0;  ///< among those with balls, from 0
   size_t firstBall = 0, secondBall = 0;    ///< places among all balls, clump after clump, from 0
   double distance = 0;                     ///< between the centers of these balls
   BondMeasures measures;                   ///< of the interface of the grains

@@ -20,14 +20,17 @@ namespace {
 using detail::OutputStream;
 using openvdb::Vec3d;
 
-/// f(clump number, center, radius) for all balls, world.
+/// f(clump, its number, center, radius) for all balls, world. Clumps that have balls are numbered.
 template <typename F>
 void forEachBall(const std::vector<Clump>& clumps, const detail::WorldTransform& world,
                  const F& f) {
-  for (size_t n = 0; n < clumps.size(); ++n)
-    for (const Clump::Ball& ball : clumps[n].balls)
-      f(n, world.origin + world.edges * ball.center.asVec3d(),
+  size_t number = 0;
+  for (const Clump& clump : clumps) {
+    for (const Clump::Ball& ball : clump.balls)
+      f(clump, number, world.origin + world.edges * ball.center.asVec3d(),
         world.shortestEdge() * std::sqrt(ball.squaredRadius));
+    number += !clump.balls.empty();
+  }
 }
 
 void numbers(OutputStream& out, const Vec3d& center, char separator) {
@@ -69,7 +72,7 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
                  const std::vector<ClumpBond>& bonds, const detail::WorldTransform& world) {
   size_t atoms = size_t(std::count_if(clumps.begin(), clumps.end(), needsCore));
   openvdb::BBoxd box;
-  forEachBall(clumps, world, [&](size_t, const Vec3d& center, double radius) {
+  forEachBall(clumps, world, [&](const Clump&, size_t, const Vec3d& center, double radius) {
     ++atoms;
     box.expand(center - Vec3d(radius));
     box.expand(center + Vec3d(radius));
@@ -87,18 +90,19 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   out.text("\nAtoms # hybrid sphere molecular\n\n");
   std::vector<std::string> densities;
   for (const Clump& clump : clumps)
-    densities.push_back(detail::shortestDecimal(densityOfAtoms(clump, world)));
+    if (!clump.balls.empty())
+      densities.push_back(detail::shortestDecimal(densityOfAtoms(clump, world)));
   size_t atom = 0;
-  const auto writeAtom = [&](size_t n, const Vec3d& center, double radius) {
+  const auto writeAtom = [&](const Clump&, size_t n, const Vec3d& center, double radius) {
     out.number(++atom);
     out.text(" 1 ");
     numbers(out, center, ' ');
     out.text(fmt::format(" {} {} {}\n", detail::shortestDecimal(2 * radius), densities[n], n + 1));
   };
   forEachBall(clumps, world, writeAtom);
-  forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
-    if (needsCore(clumps[n]))
-      writeAtom(n, center + Vec3d(kCoreShift * radius, 0, 0), kCoreRadius * radius);
+  forEachBall(clumps, world, [&](const Clump& clump, size_t n, const Vec3d& center, double radius) {
+    if (needsCore(clump))
+      writeAtom(clump, n, center + Vec3d(kCoreShift * radius, 0, 0), kCoreRadius * radius);
   });
   writeBonds(out, bonds);
 }
@@ -122,12 +126,13 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
   } else {
     const bool isTable = fileEnding(path) == ".csv";
     out.text(isTable ? "grain_id,x,y,z,radius\n" : "#format x_y_z_r_clumpId\n");
-    forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
-      if (isTable) out.text(std::to_string(clumps[n].label) + ",");
+    const auto writeBall = [&](const Clump& clump, size_t n, const Vec3d& center, double radius) {
+      if (isTable) out.text(std::to_string(clump.label) + ",");
       numbers(out, center, isTable ? ',' : ' ');
       out.text((isTable ? "," : " ") + detail::shortestDecimal(radius));
       out.text(isTable ? "\n" : " " + std::to_string(n) + "\n");
-    });
+    };
+    forEachBall(clumps, world, writeBall);
   }
   out.commit();
 }
