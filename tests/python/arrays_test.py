@@ -3,6 +3,7 @@
 """Labels of arrays of every kind are those of the command, byte for byte."""
 
 import itertools
+import mmap
 import subprocess
 import sys
 
@@ -81,6 +82,21 @@ def test_a_memmap_does_not_become_memory(tmp_path):
     changed = np.load(tmp_path / "scan.npy", mmap_mode="c")
     changed[40, 5, 6] = 1
     assert madf.Mask(changed[30:], phase=1).voxels == 1 and changed[40, 5, 6] == 1
+
+
+@pytest.mark.parametrize("make", [
+    lambda file, size: mmap.mmap(file.fileno(), size, access=mmap.ACCESS_COPY),
+    lambda file, size: mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)])
+def test_what_only_a_private_map_has_stays(make, array, tmp_path):
+    np.zeros_like(array).tofile(tmp_path / "zeros.raw")
+    with open(tmp_path / "zeros.raw", "r+b") as file:
+        volume = np.ndarray(array.shape, np.uint8, make(file, array.nbytes))
+    volume[:] = array
+    assert np.array_equal(madf.Mask(volume, **PHASE), array) and np.array_equal(volume, array)
+    changed = np.memmap(tmp_path / "zeros.raw", np.uint8, "c", shape=array.shape)
+    changed[:] = array
+    view = changed.view(np.ndarray)
+    assert np.array_equal(madf.Mask(view, **PHASE), array) and np.array_equal(view, array)
 
 
 def test_h5py(array, expected, tmp_path):

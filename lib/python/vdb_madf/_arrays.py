@@ -155,13 +155,15 @@ def _array_source(array: Any) -> _core.ArraySource:
 
 def _mapped(array: Any) -> Optional[mmap.mmap]:
     """The memory map behind a read-only numpy.memmap: what was read of it is forgotten slab by
-    slab, or the whole file would count as memory of the process."""
-    owner = array
+    slab, or the whole file would count as memory of the process. Data of other maps may be there
+    alone."""
+    owner, modes = array, set()
     while isinstance(owner, np.ndarray):
-        if isinstance(owner, np.memmap) and owner.mode != "r":
-            return None  # changes may be there alone
+        if isinstance(owner, np.memmap):
+            modes.add(owner.mode)
         owner = owner.base
-    return owner if isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED") else None
+    in_file = modes == {"r"} and isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED")
+    return owner if in_file else None
 
 
 def _name(array: Any) -> str:
