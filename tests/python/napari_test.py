@@ -54,6 +54,27 @@ def test_reduced_labels_and_bonds_lie_on_each_other():
     assert bonds[0, 0] == pytest.approx(np.multiply(0.002, (9.5, 15.5, 11.5)))
 
 
+def test_labels_and_bonds_of_a_crop_lie_on_each_other(tmp_path):
+    """Also where it is reduced, and as the plug-in reads it."""
+    array = np.zeros((40, 40, 40), np.uint8)
+    array[4:16, 8:24, 4:20], array[4:16, 8:24, 20:36] = 1, 1
+    crop = np.s_[4:36, 4:36, 3:39]
+    array[4:16, 8:24, 20] = 0
+    array[9:11, 14:18, 20] = 1
+    whole = madf.segment(array, phase=1, voxel_size="2x2x3um", crop=crop).labels
+    get_reader = importlib.import_module("vdb_madf._napari").get_reader
+    for labels in (whole, whole.reduce(2)):
+        path = str(tmp_path / "crop.vdb")
+        labels.save(path)
+        for layers in (madf.to_napari(labels), get_reader(path)(path)):
+            (grains, of_grains, _), (bonds, of_bonds, _) = layers
+            assert any(labels.first) and len(bonds) == 1
+            first = of_bonds["features"]["first"][0]
+            center = np.argwhere(grains == first).mean(axis=0)
+            assert bonds[0, 0] == pytest.approx(
+                center * of_grains["scale"] + of_grains["translate"])
+
+
 def test_measured_and_empty(labels):
     measured = madf.measure(labels, shape=True)
     (_, arguments, _), _ = madf.to_napari(labels, measured, name="sample")

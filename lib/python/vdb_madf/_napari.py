@@ -48,7 +48,9 @@ def to_napari(labels: Union[Labels, Segmentation, Source],
     grains = {column: values for column, values in measured.grains.items() if column != "id"}
     ends = [np.searchsorted(measured.grains["id"], measured.bonds[end])
             for end in ("first", "second")]
-    centers = volume.origin + factor * measured.points("centroid").reshape(-1, 3)
+    # Places of tables count from the center of voxel 0,0,0 of the scan.
+    zero = np.subtract(volume.origin, np.multiply(volume.first, volume.spacing))
+    centers = zero + factor * measured.points("centroid").reshape(-1, 3)
     first, second = (centers[rows] for rows in ends)
     metadata = {"unit": measured.unit, "units": dict(measured.units)}
     return [
