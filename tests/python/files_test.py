@@ -180,6 +180,12 @@ def test_what_a_file_does_not_hold_is_a_warning(tmp_path):
         said = [str(one.message) for one in heard]
         assert len(said) == len(texts), (name, said)
         assert all(text in line for text, line in zip(texts, said)), (name, said)
+    closed = madf.segment(array, phase=1, voxel_size="2um", boundary="closed").labels
+    for name in ("b.tif", "b.nrrd", "b.zarr"):
+        with pytest.warns(UserWarning, match=f"{name}: does not say that the boundary is closed"):
+            closed.save(tmp_path / name)
+    with pytest.warns(UserWarning, match="center of its first voxel is at 0.0015,0.0015,0.0015 mm"):
+        madf.Labels(array, voxel_size="1um").reduce(4).save(tmp_path / "c.tif")
     mask = madf.Mask(array, phase=1, crop=np.s_[2:9, 0:20, 0:20])
     with pytest.warns(UserWarning, match="begins at voxel 0,0,2"):
         mask.save(tmp_path / "m.tif")

@@ -90,8 +90,9 @@ TEST_CASE("cli: volumes come from standard input and go to standard output", "[c
   CHECK(piped("convert - npy:-" + dims, bench.bytes("s.raw")) == bench.bytes("s.npy"));
   CHECK(piped("convert - nrrd:- --skip 1" + dims, "x" + bench.bytes("s.raw")) ==
         bench.bytes("s.nrrd"));
-  bench.mustRun("segment s.vdb g.npy --boundary closed");
-  CHECK(piped("segment - npy:- --boundary closed", bench.bytes("s.npy")) == bench.bytes("g.npy"));
+  bench.mustRun("segment s.vdb g.npy --boundary closed -q");
+  CHECK(piped("segment - npy:- --boundary closed -q", bench.bytes("s.npy")) ==
+        bench.bytes("g.npy"));
   CHECK(Json::parse(piped("info - --json -", bench.bytes("s.npy"))).at("size") ==
         Json({20, 20, 20}));
   CHECK(piped("sweep - - --merge both --theta -1", bench.bytes("s.npy")).find("gamma,") == 0);

@@ -195,6 +195,22 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
         {"0.5 x 0.7 x 1.2 um", "0.5 x 0.7 x 1.3 um"});
 }
 
+TEST_CASE("cli: an image that does not say its boundary is told", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack s.tif --size 24 --radius 5");
+  bench.mustRun("segment s.tif open.vdb");
+  bench.mustRun("segment s.tif closed.vdb --boundary closed --keep manifold");
+  bench.mustRun("convert open.vdb o.mhd");
+  for (const std::string run :
+       {"convert closed.vdb o.tif", "export closed.vdb o.raw --as mask",
+        "segment s.tif o.nrrd --boundary closed", "remerge closed.vdb o.mha"})
+    notes(bench, run, {": does not say that the boundary is closed", "--boundary closed"});
+  const Outcome zarr = bench.run("export closed.vdb o.zarr");
+  CHECK_THAT(zarr.err, vdb_madf::test::Contains("does not say that the boundary is closed"));
+  for (const std::string run : {"convert closed.vdb o.vdb", "export closed.vdb o.vti"})
+    bench.mustRun(run);
+}
+
 TEST_CASE("cli: grains that vanish in reduced labels are said", "[cli]") {
   const Bench bench;
   initialize();

@@ -152,7 +152,7 @@ TEST_CASE("cli: an empty object has no grains", "[cli]") {
     CHECK(json.at("porosity") == 1);
     bench.mustRun("render g.vdb g.png");
     bench.mustRun("compare g.vdb g.vdb");
-    bench.mustRun("convert g.vdb g.raw");
+    bench.mustRun("convert g.vdb g.raw -q");
     CHECK(bench.bytes("g.raw") == std::string(4 * 64, '\0'));
   }
   bench.mustRun(kSnow + "s.raw");

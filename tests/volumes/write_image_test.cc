@@ -15,8 +15,10 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/method/boundary.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/read_mask.h"
+#include "vdb_madf/volumes/image_losses.h"
 #include "vdb_madf/volumes/label_type.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -222,6 +224,28 @@ TEST_CASE("image_write: labels take the smallest unsigned type that programs exp
   tiles->tree().addTile(1, Coord(1024, 0, 0), -5, false);
   CHECK(labelType(*tiles) == SampleType::int32);
   CHECK(labelType(*Int32Grid::create(-1)) == SampleType::int32);
+}
+
+TEST_CASE("image_write: what a file does not hold is said", "[image_write]") {
+  const auto grid = Int32Grid::create(0);
+  setDomain(*grid, CoordBBox(Coord(0), Coord(7)));
+  setVoxelSize(*grid, VoxelSize({1e-5, 1e-5, 2e-5}));
+  CHECK(lossesOf("a.tif", *grid).empty());
+  CHECK(lossesOf("a.raw", *grid) ==
+        std::vector<std::string>{"a.raw: does not say that its voxels are no cubes: give their "
+                                 "edges again where it is read (--voxel-size)"});
+  // Of reduced labels the center of the first voxel lies between those of the scan.
+  grid->transform().postTranslate(openvdb::Vec3d(0.005, 0.005, 0.01));
+  CHECK(lossesOf("a.mha", *grid).empty());
+  CHECK(lossesOf("a.h5", *grid) ==
+        std::vector<std::string>{"a.h5: the center of its first voxel is at 0.005,0.005,0.01 mm, "
+                                 "and where it is read at 0 (a .vdb keeps the place)"});
+  setBoundary(*grid, Boundary::open);
+  CHECK(lossesOf("a.mha", *grid).empty());
+  setBoundary(*grid, Boundary::closed);
+  CHECK(lossesOf("a.mha", *grid) ==
+        std::vector<std::string>{"a.mha: does not say that the boundary is closed: give that again "
+                                 "where it is read (--boundary closed; a .vdb says it)"});
 }
 
 TEST_CASE("image_write: interrupted or out of space, nothing remains", "[image_write]") {

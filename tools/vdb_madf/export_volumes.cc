@@ -92,7 +92,7 @@ void exportZarr(const ExportArguments& o, const Common& common, const Labels& la
   options.mesh = meshOptions(o);
   options.meshReduction = reductionOf(o, aboutOf(labels));
   writeOmeZarr(o.out, labels, box, options, common.progress);
-  note({lostRegion(o.out, aboutOf(labels))}, common);
+  note({lostRegion(o.out, aboutOf(labels)), lostBoundary(o.out, aboutOf(labels))}, common);
   say(o, common,
       fmt::format("OME-Zarr {}, the object and labels/grain, {}{}", o.ome, sizeText(box),
                   o.meshes ? "; meshes and measures for neuroglancer" : ""));

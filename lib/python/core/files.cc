@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <optional>
 
 #include "bindings.h"
@@ -70,12 +71,13 @@ void saveImage(const std::string& path, const GridPtr& grid, const std::string& 
 /// What the command notes of such a file.
 std::vector<std::string> fileLosses(const std::string& path, const GridPtr& grid,
                                     const std::string& kind) {
-  if (kind == "vti" || kind == "zarr") {
-    const std::string loss = lostRegion(path, *grid);
-    return loss.empty() ? std::vector<std::string>() : std::vector<std::string>{loss};
-  }
-  const bool isImage = kind == "labels" || kind == "mask";
-  return isImage && fileEnding(path) != ".vdb" ? lossesOf(path, *grid) : std::vector<std::string>();
+  if ((kind == "labels" || kind == "mask") && fileEnding(path) != ".vdb")
+    return lossesOf(path, *grid);
+  std::vector<std::string> losses;
+  if (kind == "vti" || kind == "zarr") losses.push_back(lostRegion(path, *grid));
+  if (kind == "zarr") losses.push_back(lostBoundary(path, *grid));
+  losses.erase(std::remove(losses.begin(), losses.end(), ""), losses.end());
+  return losses;
 }
 
 void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,

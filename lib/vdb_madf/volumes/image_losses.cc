@@ -7,6 +7,7 @@
 
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf {
 
@@ -27,23 +28,38 @@ std::string lostRegion(const std::string& path, const openvdb::GridBase& grid) {
          "it)";
 }
 
+std::string lostBoundary(const std::string& path, const openvdb::GridBase& grid) {
+  if (storedBoundary(grid) != Boundary::closed) return "";
+  return path +
+         ": does not say that the boundary is closed: give that again where it is read "
+         "(--boundary closed; a .vdb says it)";
+}
+
 std::string lostPlace(const std::string& path, const openvdb::GridBase& grid) {
   const std::string ending = fileEnding(path);
   for (const char* hasPlace : {".mha", ".mhd", ".nrrd", ".nhdr"})
     if (ending == hasPlace) return "";
   const auto domain = storedDomain(grid);
   const Coord first = domain ? domain->box().min() : Coord(0);
-  if (first == Coord(0)) return "";
+  if (first != Coord(0))
+    return fmt::format(
+        "{}: begins at voxel {},{},{} of the scan, and where it is read its first one is 0,0,0 (a "
+        ".vdb keeps the place)",
+        path, first.x(), first.y(), first.z());
+  const openvdb::Vec3d center = grid.indexToWorld(first);
+  const auto size = storedVoxelSize(grid);
+  if (!size || center == openvdb::Vec3d(0)) return "";
   return fmt::format(
-      "{}: begins at voxel {},{},{} of the scan, and where it is read its first one is 0,0,0 (a "
-      ".vdb keeps the place)",
-      path, first.x(), first.y(), first.z());
+      "{}: the center of its first voxel is at {:.6g},{:.6g},{:.6g} {}, and where it is read at 0 "
+      "(a .vdb keeps the place)",
+      path, center[0], center[1], center[2], size->unit());
 }
 
 std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid) {
   std::vector<std::string> losses;
-  for (const std::string& loss : {lostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid)),
-                                  lostRegion(path, grid), lostPlace(path, grid)})
+  for (const std::string& loss :
+       {lostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid)), lostRegion(path, grid),
+        lostBoundary(path, grid), lostPlace(path, grid)})
     if (!loss.empty()) losses.push_back(loss);
   return losses;
 }

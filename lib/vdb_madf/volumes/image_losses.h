@@ -22,7 +22,11 @@ std::string lostEdges(const std::string& path, bool areCubes, const std::optiona
 /// Says where the region of a grid ends.
 std::string lostRegion(const std::string& path, const openvdb::GridBase& grid);
 
-/// Says where in the scan the first voxel of a grid lies, if that is not 0,0,0.
+/// Says that the boundary is closed: that there is nothing beyond the faces.
+std::string lostBoundary(const std::string& path, const openvdb::GridBase& grid);
+
+/// Says where in the scan the first voxel of a grid lies, if that is not 0,0,0, or else where its
+/// center lies in the world, as of reduced labels.
 std::string lostPlace(const std::string& path, const openvdb::GridBase& grid);
 
 /// Lists all of these that there are.
