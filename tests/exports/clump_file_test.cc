@@ -48,6 +48,9 @@ TEST_CASE("clumps: bonds join the nearest balls, and stand in both files", "[clu
   CHECK(readFile(folder / "cover.csv") ==
         "grain_id,voxels,balls,uncovered,outside,volume_error,farthest\n"
         "2,30,3,3,1,-0.06666666666666667,0.125\n5,1,0,1,0,-1,\n6,50,2,0,0,0,0\n");
+  CHECK(describeClumps(made, true) ==
+        "3 grains, 5 balls; uncovered 4.94 %, outside the own grain 1.23 %, volume error -3.70 %, "
+        "farthest voxel 0.25 voxels from its balls; 1 grain without a ball");
   CHECK_THROWS_AS(writeClumpBonds(folder / "b.txt", bonds, *transform), InvalidInput);
   CHECK_THROWS_AS(writeClumpCover(folder / "b.txt", made, *transform), InvalidInput);
 }

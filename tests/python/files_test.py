@@ -3,6 +3,8 @@
 """Meshes are those of the labels; files that are written are those of the command."""
 
 import gc
+import os
+import subprocess
 import warnings
 
 import numpy as np
@@ -163,6 +165,24 @@ def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
     with pytest.raises((madf.InvalidInput, madf.IoError), match=text):
         labels.save(tmp_path / name, **arguments)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.data", "folder"])
+def test_grains_without_a_ball_are_a_warning_as_the_command_says(name, tmp_path):
+    """A voxel at the corner of a block has none."""
+    array = np.zeros((9, 9, 30), np.int32)
+    array[:, :, 2:28] = 1
+    array[0, 0, 2] = 2
+    labels = madf.Labels(array)
+    labels.save(tmp_path / "labels.vdb")
+    command = [os.environ["VDB_MADF_TOOL"], "export", tmp_path / "labels.vdb",
+               tmp_path / f"there{name}", "--as", "clumps"]
+    said = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    with pytest.warns(UserWarning) as heard:
+        labels.save(tmp_path / f"here{name}", kind="clumps")
+    text = str(heard[0].message)
+    assert text.endswith("; 1 grain without a ball") and text.startswith(str(tmp_path / "here"))
+    assert text.replace("here", "there") == said.strip()
 
 
 def test_what_a_file_does_not_hold_is_a_warning(tmp_path):

@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <optional>
 #include <type_traits>
 
@@ -188,27 +187,7 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
   else
     writeClumps(o.out, made, labels.transform(), bonds, common.progress);
   files.commit();
-  size_t ballCount = 0, without = 0;
-  int64_t voxels = 0, uncovered = 0, outside = 0;
-  double farthest = 0;
-  for (const Clump& clump : made) {
-    ballCount += clump.balls.size();
-    without += clump.balls.empty();
-    voxels += clump.voxels;
-    uncovered += clump.uncovered;
-    outside += clump.outside;
-    farthest = std::max(farthest, clump.farthest);
-  }
-  const auto percent = [&](int64_t part) {
-    return voxels ? 100.0 * double(part) / double(voxels) : 0.0;
-  };
-  std::string text = fmt::format(
-      "{}, {}; uncovered {:.2f} %, outside the own grain {:.2f} %, volume error {:.2f} %, farthest "
-      "voxel {:.2f} {} from its balls",
-      counted(made.size(), "grain"), counted(ballCount, "ball"), percent(uncovered),
-      percent(outside), percent(outside - uncovered), farthest,
-      hasCubicVoxels(labels) ? "voxels" : "shortest edges");
-  if (without > 0) text += fmt::format("; {} without a ball", counted(without, "grain"));
+  std::string text = describeClumps(made, hasCubicVoxels(labels));
   if (!o.bonds.empty()) text += fmt::format("; {} in {}", counted(bonds.size(), "bond"), o.bonds);
   // Distances ignore what may be beyond the faces of an open scan.
   const auto domain = storedDomain(labels);

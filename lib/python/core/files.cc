@@ -139,9 +139,11 @@ void saveSandAtlas(const std::string& path, const GridPtr& labels, int smoothing
   });
 }
 
-void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& balls, int mostBalls,
-                double uncovered, bool apart, const Call& call) {
-  write(call, [&](Interrupter* interrupter) {
+/// @return a note, if grains are left out
+std::vector<std::string> saveClumps(const std::string& path, const GridPtr& labels,
+                                    const GridPtr& balls, int mostBalls, double uncovered,
+                                    bool apart, const Call& call) {
+  return withoutLock(call, [&](Interrupter* interrupter) {
     const auto made =
         clumps(asLabels(*labels), asLabels(*balls), {mostBalls, uncovered, apart}, interrupter);
     if (fileEnding(path).empty())
@@ -149,6 +151,10 @@ void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& b
                        labels->transform());
     else
       writeClumps(path, made, labels->transform(), {}, interrupter);
+    std::vector<std::string> notes;
+    if (std::any_of(made.begin(), made.end(), [](const Clump& c) { return c.balls.empty(); }))
+      notes.push_back(path + ": " + describeClumps(made, hasCubicVoxels(*labels)));
+    return notes;
   });
 }
 

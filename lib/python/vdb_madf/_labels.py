@@ -224,7 +224,8 @@ class Labels(Volume):
           (`smoothing`) and measures of each grain
         - "clumps": .txt (YADE), .data (LAMMPS), .csv, or a folder that is not there yet
           (MercuryDPM): grains as medial balls, computed with closed faces, `max_balls` each,
-          `uncovered` part of them, `apart` if balls of different grains shall not overlap
+          `uncovered` part of them, `apart` if balls of different grains shall not overlap; warns of
+          grains that have no ball
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for
           renderers
         - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,
@@ -237,6 +238,7 @@ class Labels(Volume):
         if type is not None and (kind not in ("labels", "mask") or name.lower().endswith(".vdb")):
             raise _core.InvalidInput(f"type={type!r}: {name} has no type of samples to choose")
         grid = self._grid
+        notes = _core.file_losses(name, grid, kind)
         with calling(progress, threads) as call:
             if kind == "labels" and name.lower().endswith(".vdb"):
                 _core.save_vdb(name, [grid], call)
@@ -260,7 +262,7 @@ class Labels(Volume):
                 _core.save_sand_atlas(name, grid, smoothing, call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
-                _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)
+                notes += _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)
             elif kind == "hexahedra":
                 _core.save_hexahedra(name, grid, call)
             elif kind == "preview":
@@ -269,7 +271,7 @@ class Labels(Volume):
                 _core.save_picture(name, grid, size, azimuth, elevation, call)
             else:
                 _core.save_level_sets(name, grid, smoothing, kind == "surface", call)
-        warn(_core.file_losses(name, grid, kind))
+        warn(notes)
 
     def _repr_png_(self) -> Optional[bytes]:
         """The picture that notebooks show."""

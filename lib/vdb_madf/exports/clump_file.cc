@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/clump_file.h"
@@ -108,6 +109,30 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
 }
 
 }  // namespace
+
+std::string describeClumps(const std::vector<Clump>& clumps, bool areCubes) {
+  size_t balls = 0, without = 0;
+  int64_t voxels = 0, uncovered = 0, outside = 0;
+  double farthest = 0;
+  for (const Clump& clump : clumps) {
+    balls += clump.balls.size();
+    without += clump.balls.empty();
+    voxels += clump.voxels;
+    uncovered += clump.uncovered;
+    outside += clump.outside;
+    farthest = std::max(farthest, clump.farthest);
+  }
+  const auto percent = [&](int64_t part) {
+    return voxels ? 100.0 * double(part) / double(voxels) : 0.0;
+  };
+  std::string text = fmt::format(
+      "{}, {}; uncovered {:.2f} %, outside the own grain {:.2f} %, volume error {:.2f} %, farthest "
+      "voxel {:.2f} {} from its balls",
+      counted(clumps.size(), "grain"), counted(balls, "ball"), percent(uncovered), percent(outside),
+      percent(outside - uncovered), farthest, areCubes ? "voxels" : "shortest edges");
+  if (without > 0) text += fmt::format("; {} without a ball", counted(without, "grain"));
+  return text;
+}
 
 bool isClumpEnding(const std::string& path) {
   const std::string end = fileEnding(path);

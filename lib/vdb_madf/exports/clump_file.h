@@ -32,6 +32,9 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
 /// @throw InvalidInput for an ending other than .csv, or voxels that are mirrored; IoError.
 void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
                      const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
+/// Says how well balls cover their grains, and how many grains have none, which a file leaves out.
+/// \p areCubes: what the voxels are, for the unit of lengths
+std::string describeClumps(const std::vector<Clump>& clumps, bool areCubes);
 /// True if writeClumps knows the ending.
 bool isClumpEnding(const std::string& path);
 
