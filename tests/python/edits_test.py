@@ -32,6 +32,18 @@ def test_edits_are_those_of_the_command(seg, command, tmp_path):
     assert again.digest() == there.digest()
 
 
+def test_counts_are_those_of_the_edited_labels(seg):
+    merged, dropped = seg.edit("merge 1 2"), seg.edit("drop 1")
+    assert merged.counts["object_voxels"] == seg.counts["object_voxels"]
+    assert merged.counts["medial_balls"] == seg.counts["medial_balls"]
+    assert "crumbs" in seg.counts and "crumbs" not in merged.counts
+    assert dropped.counts["object_voxels"] == dropped.labels.voxels.sum()
+    assert set(dropped.counts) == {"grains", "object_voxels", "leaves"}
+    again = dropped.remerge()  # of the manifolds, which stay
+    assert again.counts == {name: seg.counts[name] for name in again.counts}
+    assert set(again.counts) == set(merged.counts)
+
+
 def test_a_split_undoes_a_merge(seg):
     merged = seg.edit("merge 4 1 2")
     assert merged.counts["grains"] == seg.counts["grains"] - 2

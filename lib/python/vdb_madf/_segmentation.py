@@ -22,7 +22,8 @@ from ._mask import Mask, Region
 PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=0, fill_holes=0,
                              tidy=0)
 
-_FLAWS = ("crumbs", "specks", "slivers", "in_pieces")
+_COUNTS = ("object_voxels", "cavities", "cavity_voxels", "medial_balls", "kept_balls",
+           "critical_points", "grains", "largest_squared_distance", "leaves")
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,12 +79,11 @@ class Segmentation:
         with calling(progress, threads) as call:
             grid = _core.remerge(self._manifolds(), call, merging=merging, tidy=rounds)
         labels = Labels._of(grid)
-        counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
-        counts["grains"] = labels.metadata["madf_grains"]
         options = {name: value for name, value in self.options.items()
                    if name not in (*given, "min_grain")}
-        return Segmentation(labels, counts, {}, {**options, **merging, "tidy": rounds}, self.graph,
-                            self.manifold, self.distance_squared, self.power, self.balls)
+        return Segmentation(labels, _counts(labels), {}, {**options, **merging, "tidy": rounds},
+                            self.graph, self.manifold, self.distance_squared, self.power,
+                            self.balls)
 
     @property
     def hierarchy(self) -> Dict[str, npt.NDArray[Any]]:
@@ -114,11 +114,10 @@ class Segmentation:
     @checked
     def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
              threads: int = 0) -> "Segmentation":
-        """Edited labels, as of Labels.edit(), with the kept manifolds to split grains by."""
+        """Edited labels, as of Labels.edit(), with the kept manifolds to split grains by. Where
+        something was dropped `counts` are without those of balls, critical points and cavities."""
         labels = self.labels.edit(edits, manifold=self.manifold, progress=progress, threads=threads)
-        counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
-        counts["grains"] = labels.metadata["madf_grains"]
-        return replace(self, labels=labels, counts=counts, seconds={})
+        return replace(self, labels=labels, counts=_counts(labels), seconds={})
 
     @checked
     def sweep(self, strictness: Union[Sequence[float], npt.NDArray[Any], None] = None, *,
@@ -168,6 +167,12 @@ class Segmentation:
 
     def _repr_png_(self) -> Optional[bytes]:
         return self.labels._repr_png_()
+
+
+def _counts(labels: Labels) -> Dict[str, int]:
+    """What labels say of themselves, which is nothing of flaws."""
+    said = labels.metadata
+    return {name: said[f"madf_{name}"] for name in _COUNTS if f"madf_{name}" in said}
 
 
 def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, threads: int,
