@@ -149,6 +149,20 @@ def test_what_is_kept(sample, command, tmp_path):
     assert (np.asarray(here) == np.asarray(there)).all() and here.metadata == there.metadata
 
 
+@pytest.mark.parametrize("voxel_size, edges", [
+    ("2um", (2, 2, 2)), ("0.5x0.5x1.2um", (1.2, 0.5, 0.5)), ("1x1x1.37um", (1.37, 1, 1))])
+def test_squared_lengths_have_a_unit(voxel_size, edges):
+    """The largest ball of a ball has its radius, whatever the voxels are."""
+    places = (np.indices((31, 31, 31)).T - 15).T * np.reshape(edges, (3, 1, 1, 1))
+    ball = (places**2).sum(axis=0) <= (9 * min(edges))**2
+    seg = madf.segment(ball, voxel_size=voxel_size, keep=("balls", "distance"))
+    nearest = (places**2).sum(axis=0)[~ball].min()  # to the background, from the middle
+    for squares, unit in ((seg.balls["squared_radius"], seg.labels.squared_unit),
+                          (np.asarray(seg.distance_squared), seg.distance_squared.squared_unit)):
+        largest = np.sqrt(squares.max() * unit)
+        assert seg.labels.unit == "mm" and largest == pytest.approx(1e-3 * nearest**0.5, rel=1e-5)
+
+
 def test_memory_is_said_and_limited(sample, array):
     mask = sample[0]
     assert mask.segment_memory > mask._grid.memory

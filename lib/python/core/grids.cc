@@ -3,10 +3,12 @@
 
 #include <openvdb/tools/Dense.h>
 
+#include <cmath>
 #include <variant>
 
 #include "bindings.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf::python {
 
@@ -55,6 +57,11 @@ py::tuple spacingOf(const openvdb::GridBase& grid) {
   return triple(reversed(grid.voxelSize()));
 }
 
+/// The square in the world of a squared length of 1 in the units of the weights.
+double squaredUnit(const openvdb::GridBase& grid) {
+  return std::pow(grid.voxelSize().z(), 2) / storedWeights(grid).z;
+}
+
 int64_t domainVoxels(const openvdb::GridBase& grid) {
   const auto domain = storedDomain(grid);
   return domain ? int64_t(domain->voxelCount()) : int64_t(shownBox(grid).volume());
@@ -91,6 +98,7 @@ void bindGrids(py::module_& m) {
                              })
       .def_property_readonly("origin", originOf)
       .def_property_readonly("spacing", spacingOf)
+      .def_property_readonly("squared_unit", squaredUnit)
       .def_property_readonly("metadata", metadataOf)
       .def_property_readonly("active_voxels", &Base::activeVoxelCount)
       .def_property_readonly("domain_voxels", domainVoxels)

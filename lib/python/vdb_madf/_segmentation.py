@@ -42,14 +42,18 @@ class Segmentation:
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
     `reaches_out` (K,), true if its ball leaves an open domain, where nobody knows how large it is,
-    `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers
-    of critical points from 0, `contact_faces`, `saddle_height`, `cells_touch` (E,)."""
+    `voxels` (K,) of their manifolds, without filled cavities; pairs of manifolds that touch:
+    `first`, `second` (E,), numbers of critical points from 0, `contact_faces`, also between voxels
+    of filled cavities, `saddle_height`, a squared length, `cells_touch` (E,).
+
+    Squared lengths, here and below, are in voxels squared, or of voxels that are no cubes in other
+    units: `np.sqrt(squared_radius * labels.squared_unit)` is a length in `labels.unit`."""
     manifold: Optional[Labels] = field(default=None, repr=False)
     """Critical points 1 to K, if kept: what remerge() and sweep() work on."""
     distance_squared: Optional[Labels] = field(default=None, repr=False)
-    """Squared distance to the background, voxels squared, if kept."""
+    """Squared distance to the background, if kept."""
     power: Optional[Labels] = field(default=None, repr=False)
-    """Least power, voxels squared, if kept."""
+    """Least power, a squared length, if kept."""
     balls: Optional[Dict[str, npt.NDArray[Any]]] = field(default=None, repr=False)
     """Medial balls, if kept: `position` (B, 3) z, y, x, `squared_radius`, `cell_size` (B,)."""
 

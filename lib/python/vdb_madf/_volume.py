@@ -80,6 +80,11 @@ class Volume:
         return self._grid.origin
 
     @property
+    def squared_unit(self) -> float:
+        """What 1 is, in `unit` squared, of squared distances and radii of a segmentation."""
+        return self._grid.squared_unit
+
+    @property
     def voxel_size(self) -> Optional[Tuple[float, float, float]]:
         """Edges of a voxel along z, y, x in meters; None if unknown."""
         return self._grid.voxel_size
