@@ -59,6 +59,24 @@ def test_what_is_said(arguments, text):
     assert str(refused.value) == text
 
 
+@pytest.mark.parametrize("ids", [np.array([1.9, 2.2]), np.array([True, False]), [2.9], [True],
+                                 np.array([[1, 2]])])
+def test_ids_are_whole_numbers(ids, expected):
+    labels = madf.Labels(expected)
+    for work in (labels.keep, labels.drop, lambda ids: labels.mesh(ids=ids),
+                 lambda ids: labels.paint(ids, [5.0, 6.0])):
+        with pytest.raises(TypeError) as refused:
+            work(ids)
+        text = str(refused.value)
+        assert text.startswith("ids=")
+        assert text.endswith(": give a list of whole numbers or an array of whole numbers")
+    for groups in ([ids], ids[0]):
+        with pytest.raises(TypeError) as refused:
+            labels.merge(groups)
+        assert str(refused.value).endswith(
+            ": give a list of lists of whole numbers or arrays of whole numbers")
+
+
 @pytest.mark.parametrize("arguments, text", [
     (dict(radius="wide"), "radius='wide': give a number"),
     (dict(center=5), "center=5: give two numbers"),

@@ -55,8 +55,9 @@ def test_a_split_undoes_a_merge(seg):
 
 def test_edits_equal_numpy(seg):
     labels, array = seg.labels, np.asarray(seg.labels)
-    assert np.array_equal(labels.merge([(2, 1), [4, 3]]),
-                          np.where(array == 1, 2, np.where(array == 3, 4, array)))
+    for groups in ([(2, 1), [4, 3]], np.array([[2, 1], [4, 3]])):
+        assert np.array_equal(labels.merge(groups),
+                              np.where(array == 1, 2, np.where(array == 3, 4, array)))
     with pytest.raises(ValueError, match="99 is no grain of these labels"):
         labels.drop([2, 99])
     kept = labels.drop([2, 5])

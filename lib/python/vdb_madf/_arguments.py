@@ -9,6 +9,7 @@ import functools
 import inspect
 import operator
 import os
+import re
 import typing
 from typing import Any, Callable, Dict, TypeVar, Union
 
@@ -93,7 +94,15 @@ def _fits(value: Any, hint: Any) -> bool:
     if origin is collections.abc.Callable:
         return callable(value)
     kind = origin or hint
+    if kind is np.ndarray and isinstance(value, np.ndarray) and _number(hint) is not Any:
+        return value.ndim == 1 and np.issubdtype(value.dtype, _number(hint))
     return not isinstance(kind, type) or isinstance(value, kind)
+
+
+def _number(hint: Any) -> Any:
+    """The type of the numbers of an array, or Any."""
+    number, = typing.get_args(typing.get_args(hint)[1])
+    return typing.get_origin(number) or number
 
 
 def _is_index(value: Any) -> bool:
@@ -107,27 +116,26 @@ def _is_index(value: Any) -> bool:
 def _are_items(value: Any) -> bool:
     return (isinstance(value, collections.abc.Collection)
             and not isinstance(value, (str, bytes, collections.abc.Mapping))
-            and getattr(value, "ndim", 1) == 1)
+            and getattr(value, "ndim", 1) > 0)
 
 
-def _wanted(hint: Any) -> str:
+def _wanted(hint: Any, many: bool = False) -> str:
     """The type in words: "a number or two numbers". Where a path is taken, a text is one."""
     origin, parts = typing.get_origin(hint), typing.get_args(hint)
+    kind = origin or hint
     if origin is Union:
         hides = (type(None), str if os.PathLike in map(typing.get_origin, parts) else None)
-        words = [_wanted(part) for part in parts if part not in hides]
+        words = [_wanted(part, many) for part in parts if part not in hides]
         return ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else words[0]
     if origin is tuple:
-        return f"{('no', 'one', 'two', 'three')[len(parts)]} {_plural(parts[0])}"
+        return f"{('no', 'one', 'two', 'three')[len(parts)]} {_wanted(parts[0], True)}"
     if origin is collections.abc.Sequence:
-        return f"a list of {_plural(parts[0])}"
-    if origin is collections.abc.Callable:
-        return "a function"
-    kind = origin or hint
-    return _NAMES.get(kind) or {os.PathLike: "a path", np.ndarray: "an array"}.get(
-        kind, getattr(kind, "__name__", str(kind)))
-
-
-def _plural(hint: Any) -> str:
-    words = _wanted(hint)
-    return words[2:] + "s" if words.startswith("a ") else words
+        text = f"a list of {_wanted(parts[0], True)}"
+    elif origin is collections.abc.Callable:
+        text = "a function"
+    elif kind is np.ndarray:
+        text = "an array" if _number(hint) is Any else "an array of whole numbers"
+    else:
+        text = _NAMES.get(kind) or (
+            "a path" if kind is os.PathLike else getattr(kind, "__name__", str(kind)))
+    return re.sub(r"^an? (.*?)( of | \[|$)", r"\1s\2", text) if many else text

@@ -20,7 +20,7 @@ from ._files import is_tiff, kind_of, loaded, refuse_unused
 from ._mesh import Mesh
 from ._volume import Volume, edges_of, fitted, same_grid
 
-_Ids = Union[Sequence[int], npt.NDArray[Any]]
+_Ids = Union[Sequence[int], npt.NDArray[np.integer[Any]]]
 
 
 class Labels(Volume):
@@ -154,7 +154,8 @@ class Labels(Volume):
 
     @checked
     def merge(self, groups: Sequence[_Ids]) -> "Labels":
-        """Each group of grains, such as a pair, becomes one, with the label that comes first."""
+        """Each group of grains, such as a pair or a row of an array, becomes one, with the label
+        that comes first."""
         return self.edit(["merge " + " ".join(str(int(i)) for i in group) for group in groups])
 
     def relabel(self) -> "Labels":
