@@ -260,5 +260,7 @@ def test_a_volume_made_of_one_keeps_place_and_region(array):
             kind(volume, voxel_size="20um")
     copied, measured = madf.measure(madf.Labels(labels)), madf.measure(labels)
     assert measured.sample["box"] == "region" and repr(copied.sample) == repr(measured.sample)
-    with pytest.warns(UserWarning, match="its place and its region are left behind"):
-        madf.Mask(mask, invert=True)
+    for kind, other in ((lambda v: madf.Mask(v, invert=True), mask), (madf.Labels, mask),
+                        (lambda v: madf.Mask(v, threshold=1), madf.Labels(array).reduce(2))):
+        with pytest.warns(UserWarning, match="its place and its region are left behind"):
+            kind(other)

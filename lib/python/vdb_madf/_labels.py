@@ -18,7 +18,7 @@ from ._arrays import Source, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded, refuse_unused
 from ._mesh import Mesh
-from ._volume import Volume, edges_of, fitted, same_grid
+from ._volume import Volume, edges_of, fitted, left_behind, same_grid
 
 _Ids = Union[Sequence[int], npt.NDArray[np.integer[Any]]]
 
@@ -49,7 +49,7 @@ class Labels(Volume):
         options.grid = grid or ""
         with calling(progress, threads) as call:
             self._grid, notes = _core.load_labels(readable(source), options, call)
-        warn(notes)
+        warn(notes + left_behind(source))
 
     @property
     def dtype(self) -> np.dtype[Any]:

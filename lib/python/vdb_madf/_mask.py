@@ -15,7 +15,7 @@ from ._arguments import checked
 from ._arrays import ArrayLike3D, Source, is_path, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._choices import Box, Cylinder, volume_options
-from ._volume import Volume, edges_of, same_grid
+from ._volume import Volume, edges_of, left_behind, same_grid
 
 #: A region: the round field of view, or voxels that are not 0 in a mask, an array or a file.
 Region = Union[str, Cylinder, "Mask", os.PathLike[str], ArrayLike3D]
@@ -64,9 +64,7 @@ class Mask(Volume):
             if all(choice is None for choice in chosen) and not smooth and _is_bool(source):
                 options.select_phases([1.0])
             self._grid, notes = _core.load_mask(readable(source), options, call)
-        if isinstance(source, Volume) and (any(source.first) or "madf_region" in source.metadata):
-            notes.append("a volume is read as an array: its place and its region are left behind")
-        warn(notes)
+        warn(notes + left_behind(source))
 
     @property
     def dtype(self) -> np.dtype[Any]:

@@ -208,6 +208,13 @@ def same_grid(source: Volume, voxel_size: Optional[str]) -> _core.Grid:
     return source._grid
 
 
+def left_behind(source: object) -> List[str]:
+    """A note on a volume that is read as an array."""
+    if isinstance(source, Volume) and (any(source.origin) or "madf_region" in source.metadata):
+        return ["a volume is read as an array: its place and its region are left behind"]
+    return []
+
+
 def fitted(values: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     """The values in that type; those that it does not hold as they are are refused."""
     if np.can_cast(values.dtype, dtype):
