@@ -188,6 +188,13 @@ def test_places(sample, labels, array):
     assert (np.asarray(crop) == array[8:40, :, 5:70]).all()
 
 
+def test_a_mask_lies_within_its_domain(array):
+    with pytest.raises(madf.InvalidInput, match="the object leaves the domain: object"):
+        madf.Mask(array, phase=1, domain=np.s_[5:10, 5:10, 5:10])
+    wide = madf.Mask(array, phase=1, domain=np.s_[0:100, 0:100, 0:100])
+    assert wide.fraction == pytest.approx(array.sum() / 1e6)
+
+
 def test_pickling(sample, labels, dense):
     again = pickle.loads(pickle.dumps(labels))
     assert (np.asarray(again) == dense).all() and again.metadata == labels.metadata

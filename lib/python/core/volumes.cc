@@ -108,7 +108,11 @@ Loaded withNotes(VolumeOptions options, const Call& call, const Load& load) {
 template <typename Load>
 Loaded loadMask(const std::string& name, const VolumeOptions& options, const Call& call,
                 const Load& load) {
-  Loaded loaded = withNotes(options, call, load);
+  Loaded loaded = withNotes(options, call, [&](const VolumeOptions& o, Interrupter* interrupter) {
+    const auto mask = load(o, interrupter);
+    if (o.domain) checkWithin(mask->evalActiveVoxelBoundingBox(), *o.domain);
+    return mask;
+  });
   if (options.selection && openvdb::gridConstPtrCast<MaskGrid>(loaded.first)->empty())
     loaded.second.push_back(name + ": nothing is selected (see phase, threshold, range, invert)");
   return loaded;

@@ -36,7 +36,8 @@ class Mask(Volume):
 
     voxel_size: the edge of a voxel with its unit, "8.5um", or three along x, y, z: "1x1x3um".
     roi, crop: work within a region (see Cylinder), or a box such as numpy.s_[10:90, :, 5:50]; what
-    lies outside is unknown. domain: the box of the scan, of a .vdb that does not say it.
+    lies outside is unknown. domain: the box of the scan, of a .vdb that does not say it; the object
+    lies within it.
     dataset: of a Zarr group or an HDF5 file; grid: of a .vdb.
     progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all."""
 

@@ -31,15 +31,18 @@ bool leavesRegion(const LeafIndex& index, const Domain& domain) {
 
 }  // namespace
 
+void checkWithin(const CoordBBox& object, const Domain& domain) {
+  if (object.empty() || domain.box().isInside(object)) return;
+  throw InvalidInput("the object leaves the domain: object " + toString(object) + ", domain " +
+                     toString(domain.box()) + "; crop the object, or give a domain that holds it");
+}
+
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<Domain>& domain) {
   if (boundary == Boundary::open && !domain)
     throw InvalidInput(
         "the open boundary needs a known domain: give one, or use the closed boundary");
-  if (domain && index.voxelCount() > 0 && !domain->box().isInside(index.boundingBox()))
-    throw InvalidInput("the object leaves the domain: object " + toString(index.boundingBox()) +
-                       ", domain " + toString(domain->box()) +
-                       "; crop the object, or give a domain that holds it");
+  if (domain && index.voxelCount() > 0) checkWithin(index.boundingBox(), *domain);
   if (domain && !domain->isBox() && leavesRegion(index, *domain))
     throw InvalidInput("the object leaves the region: crop the object, or give one that holds it");
   Obstacles obstacles;

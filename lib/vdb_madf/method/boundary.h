@@ -31,6 +31,9 @@ struct Obstacles {
   bool inRegion() const { return open && !domain.isBox(); }
 };
 
+/// @throw InvalidInput: a box of an object, which may be empty, reaches beyond that of the domain.
+void checkWithin(const CoordBBox& object, const Domain& domain);
+
 /// @throw InvalidInput: open without a domain, or voxels of `index` outside the domain.
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<Domain>& domain);
