@@ -170,9 +170,9 @@ class Labels(Volume):
     @checked
     def reduce(self, factor: int) -> "Labels":
         """The volume smaller by a whole factor: each voxel has the most frequent label of its
-        own. `origin` is where the center of its first voxel lies: meshes, networks and napari's
-        layers are there, places in tables count from that center. Warns of grains too small to
-        have a voxel of it."""
+        own. `origin` is where the center of its first voxel lies, and meshes, networks and napari's
+        layers are there. Places in tables count from the center of voxel 0, 0, 0, which is
+        `first` voxels before, also of a crop. Warns of grains too small to have a voxel of it."""
         return self._reduced(factor, _core.Call(None, 0))
 
     def _reduced(self, factor: int, call: _core.Call) -> "Labels":
@@ -210,8 +210,8 @@ class Labels(Volume):
         not:
 
         - "labels": .vdb (Int32 grid `grain`), or an image of any format that is written, such as
-          .tif, .nrrd or .npy, with `type` of the samples; "mask": the same with 1 where there is a
-          label
+          .tif, .nrrd or .npy (which, as .raw, holds no voxel size), with `type` of the samples;
+          "mask": the same with 1 where there is a label
         - "mesh": .ply, .obj, .stl, .glb (a node a grain, with its measures), .vtp or a folder of
           .stl files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
