@@ -214,12 +214,13 @@ TEST_CASE("histogram: labels are counted one by one, however wide the bins are",
   }
 }
 
-TEST_CASE("histogram: the value at the corners of all slices can be left out", "[histogram]") {
+TEST_CASE("histogram: the padding at the ends of rows is also left out", "[histogram]") {
   std::vector<int16_t> samples(3 * 3 * 4, -5);
   for (int z = 0; z < 4; ++z) samples[size_t(9 * z + 4)] = int16_t(z);
   const Histogram histogram = histogramOf(*imageOf<int16_t>({3, 3, 4}, samples));
   CHECK(histogram.corner == -5.0);
-  const auto inside = withoutCorner(histogram);
+  CHECK(histogram.padding == 32);
+  const auto inside = histogram.inside;
   REQUIRE(inside);
   CHECK(inside->counts == std::vector<int64_t>(4, 1));
   CHECK(inside->runs == std::vector<int64_t>(4, 1));
@@ -230,12 +231,18 @@ TEST_CASE("histogram: the value at the corners of all slices can be left out", "
   CHECK(otsuThreshold(*inside) == 2.0);
   samples[9 * 3 + 8] = 7;
   CHECK_FALSE(histogramOf(*imageOf<int16_t>({3, 3, 4}, samples)).corner);
-  CHECK_FALSE(withoutCorner(histogramOfRow<uint8_t>({3, 3})));
+  CHECK_FALSE(histogramOfRow<uint8_t>({3, 3}).inside);
   // A value in the place of the greatest.
-  const auto low = withoutCorner(histogramOf(*imageOf<uint8_t>({3, 1, 1}, {9, 4, 9})));
+  const auto low = histogramOf(*imageOf<uint8_t>({3, 1, 1}, {9, 4, 9})).inside;
   REQUIRE(low);
   CHECK(low->counts == std::vector<int64_t>{1});
   CHECK(low->max == 4);
+  // Between others, the same value is none of the padding.
+  const Histogram between = histogramOf(*imageOf<uint8_t>({6, 1, 1}, {9, 9, 4, 9, 7, 9}));
+  CHECK(between.padding == 3);
+  REQUIRE(between.inside);
+  CHECK(between.inside->finite == 3);
+  CHECK(between.inside->max == 9);
 }
 
 TEST_CASE("histogram: its line has points in a locale with a comma", "[histogram]") {

@@ -18,6 +18,7 @@
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/mask_cleaning.h"
+#include "vdb_madf/scans/scan_region.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -164,8 +165,14 @@ TEST_CASE("image_object: a round field of view does not pass for pores", "[image
   CHECK(cornerOf(size, hysteresis) == 0.0);
   CHECK(cornerOf({40, 40, kCornerSlices}) == 0.0);
   CHECK_FALSE(cornerOf({40, 40, kCornerSlices - 1}));
-  const CoordBBox box(Coord(0), Coord(39, 39, 8));
-  CHECK_FALSE(cornerOf(size, {}, ScanPart{box, Domain(box)}));
+  // So it is in crops that hold some of it, and not in a region.
+  const auto partOf = [](const CoordBBox& box) { return ScanPart{box, Domain(box)}; };
+  CHECK(cornerOf(size, {}, partOf({Coord(0, 0, 1), Coord(39, 39, 8)})) == 0.0);
+  CHECK_FALSE(cornerOf(size, {}, partOf({Coord(0, 0, 2), Coord(39, 39, 8)})));
+  CHECK(cornerOf(size, {}, partOf({Coord(20, 20, 0), Coord(39, 39, 8)})) == 0.0);
+  CHECK_FALSE(cornerOf(size, {}, partOf({Coord(10, 10, 0), Coord(29, 29, 8)})));
+  const CoordBBox whole(Coord(0), Coord(39, 39, 8));
+  CHECK_FALSE(cornerOf(size, {}, ScanPart{whole, cylinderIn(whole, {2, {{20, 20}}, 21})}));
   samples[40 * 40 * 5 + 39] = 1;
   CHECK_FALSE(cornerOf(size));
   samples[40 * 40 * 5 + 39] = 0;

@@ -69,9 +69,10 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
     json["otsu_object_share"] =
         double(voxelsFrom(histogram, *otsu)) / double(histogram.finite + histogram.notFinite);
   }
-  if (const auto inside = withoutCorner(histogram)) {
+  if (histogram.inside) {
     json["value_at_all_corners"] = number(*histogram.corner);
-    if (const auto otsu = otsuThreshold(*inside)) json["otsu_threshold_without_it"] = number(*otsu);
+    if (const auto otsu = otsuThreshold(*histogram.inside))
+      json["otsu_threshold_without_it"] = number(*otsu);
   }
   if (const auto valley = valleyThreshold(histogram)) json["valley_threshold"] = number(*valley);
   if (const auto blur =

@@ -58,7 +58,8 @@ Histogram histogramOf(ImageReader& image, Interrupter* interrupter) {
   const ImageInfo& info = image.info();
   std::vector<char> samples(size_t(detail::sliceBytes(info)) *
                             size_t(std::min(detail::kSlab, info.size.z)));
-  detail::CountedImage counted(image);
+  detail::PaddedImage padded(image);
+  detail::CountedImage counted(padded, nullptr, &padded);
   detail::forEachSlab(0, info.size.z, interrupter,
                       [&](int z, int count) { counted.read(z, count, samples.data()); });
   return counted.histogram();
@@ -193,29 +194,6 @@ std::optional<double> valleyThreshold(const Histogram& histogram) {
            (histogram.max - histogram.min) * (double(bin) + 0.5) / double(kModeBins);
   }
   return std::nullopt;
-}
-
-std::optional<Histogram> withoutCorner(const Histogram& histogram) {
-  if (!histogram.corner || !(histogram.max > histogram.min)) return std::nullopt;
-  Histogram rest = histogram;
-  const auto bin = size_t(int64_t(std::floor(*rest.corner / rest.width)) - rest.first);
-  rest.finite -= rest.counts[bin];
-  rest.counts[bin] = rest.runs[bin] = 0;
-  while (!rest.counts.empty() && rest.counts.back() == 0) {
-    rest.counts.pop_back();
-    rest.runs.pop_back();
-    rest.max = rest.lowerEdge(rest.counts.size() - 1);
-  }
-  const auto begin =
-      std::find_if(rest.counts.begin(), rest.counts.end(), [](int64_t count) { return count > 0; });
-  if (begin == rest.counts.end()) return std::nullopt;
-  const auto empty = begin - rest.counts.begin();
-  rest.counts.erase(rest.counts.begin(), begin);
-  rest.runs.erase(rest.runs.begin(), rest.runs.begin() + empty);
-  rest.first += empty;
-  if (empty > 0) rest.min = rest.lowerEdge(0);
-  rest.corner.reset();
-  return rest;
 }
 
 int64_t voxelsFrom(const Histogram& histogram, double threshold) {

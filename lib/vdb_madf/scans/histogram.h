@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,10 @@ struct Histogram {
   bool onlyFew = true;  ///< `few` has all values
   /// The one value at the four corners of all slices, as around a round field of view.
   std::optional<double> corner;
+  int64_t padding = 0;  ///< voxels of this value between an end of a row and the first of another
+  /// The histogram without the padding and what filters mix with it; none if nothing is left, or
+  /// left out.
+  std::shared_ptr<const Histogram> inside;
 
   double lowerEdge(size_t bin) const { return double(first + int64_t(bin)) * width; }
 };
@@ -79,9 +84,6 @@ std::optional<double> otsuThreshold(const Histogram& histogram);
 /// threshold_minimum() finds it: with one bin a value the next value, else the middle of the bin.
 /// None if there are no two maxima.
 std::optional<double> valleyThreshold(const Histogram& histogram);
-
-/// The histogram without the value at all corners; none if they differ, or nothing else is there.
-std::optional<Histogram> withoutCorner(const Histogram& histogram);
 
 /// Voxels at or above a threshold (one of those above, or any edge of a bin).
 int64_t voxelsFrom(const Histogram& histogram, double threshold);

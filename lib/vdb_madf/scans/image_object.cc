@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/detail/gaussian.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
@@ -21,9 +22,11 @@
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/detail/histogram_builder.h"
 #include "vdb_madf/scans/detail/non_finite_count.h"
+#include "vdb_madf/scans/detail/padded_image.h"
 #include "vdb_madf/scans/detail/scan_part.h"
 #include "vdb_madf/scans/filtered_image.h"
 #include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/mask_cleaning.h"
 #include "vdb_madf/scans/read_mask.h"
 
@@ -39,18 +42,18 @@ std::string percent(int64_t part, int64_t whole) {
 
 using ThresholdOf = std::optional<double> (*)(const Histogram&);
 
-/// What the threshold would be without a value that fills the corners of all slices of a gray
-/// image, as it does around a round field of view; none if that hardly changes the object.
+/// What the threshold of a gray image would be without the padding around a round field of view;
+/// none if there is hardly any, or if that hardly changes the object.
 std::optional<double> thresholdInside(const Histogram& histogram, ThresholdOf thresholdOf,
                                       double threshold) {
   constexpr double kLittle = 0.001;  // of the voxels
+  const double little = kLittle * double(histogram.finite);
+  if (!histogram.inside || double(histogram.padding) <= little) return std::nullopt;
   if (kindOf(histogram) != ImageKind::gray) return std::nullopt;
-  const auto inside = withoutCorner(histogram);
-  const auto other = inside ? thresholdOf(*inside) : std::nullopt;
+  const auto other = thresholdOf(*histogram.inside);
   if (!other) return std::nullopt;
   const auto change = double(voxelsFrom(histogram, threshold) - voxelsFrom(histogram, *other));
-  if (std::abs(change) <= kLittle * double(histogram.finite)) return std::nullopt;
-  return other;
+  return std::abs(change) <= little ? std::nullopt : other;
 }
 
 std::string cornerText(const Histogram& histogram) {
@@ -83,6 +86,27 @@ std::string phasesRefusal(const Histogram& histogram) {
 
 using Part = std::optional<ScanPart>;
 
+/// An image behind its filters; what is said of it and of its padding is so before them.
+struct FilteredScan {
+  FilteredScan(std::unique_ptr<ImageReader> image, const GrayOptions& gray, const Part& part)
+      : scan(std::move(image)),
+        padded(*scan, gray.median + (gray.smooth > 0 ? detail::gaussianRadius(gray.smooth) : 0),
+               part ? part->box : CoordBBox::inf()) {
+    auto counted =
+        std::make_unique<detail::CountedImage>(padded, detail::middleRows(scan->info().size));
+    sample = counted.get();
+    filtered = filteredImage(std::move(counted), gray);
+  }
+  std::unique_ptr<ImageReader> scan;
+  detail::PaddedImage padded;
+  const detail::CountedImage* sample;  ///< the middle rows, which tell the kind at little cost
+  std::unique_ptr<ImageReader> filtered;
+};
+
+bool isBox(const Part& part) {
+  return !part || part->domain.isBox();
+}
+
 struct PartMasks {
   std::vector<MaskGrid::Ptr> masks;
   int64_t leftOut = 0;  ///< of the first
@@ -114,9 +138,10 @@ PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections,
 
 /// What is not 0 (or, inverted, what is), unless that would be a guess.
 ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& part,
-                      Interrupter* interrupter, const TakeLayer& take) {
+                      const detail::PaddedImage& padding, Interrupter* interrupter,
+                      const TakeLayer& take) {
   detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr,
-                               !part);
+                               &padding);
   const PartMasks read = readPart(counted, {nonZero}, part, interrupter, take);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
@@ -126,10 +151,12 @@ ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& 
   return {read.masks[0], read.leftOut, kind == ImageKind::labels && !nonZero.invert};
 }
 
-double automaticThreshold(ImageReader& image, AutomaticThreshold method, const Part& part,
+double automaticThreshold(const FilteredScan& scan, AutomaticThreshold method, const Part& part,
                           Interrupter* interrupter) {
-  const Histogram histogram =
-      part ? detail::histogramIn(*part, image, interrupter) : histogramOf(image, interrupter);
+  ImageReader& image = *scan.filtered;
+  const CoordBBox whole = imageBox(image.info().size);
+  const Histogram histogram = detail::histogramIn(part.value_or(ScanPart{whole, Domain(whole)}),
+                                                  image, scan.padded, interrupter);
   const bool isOtsu = method == AutomaticThreshold::otsu;
   const ThresholdOf thresholdOf = isOtsu ? otsuThreshold : valleyThreshold;
   const auto threshold = thresholdOf(histogram);
@@ -142,27 +169,23 @@ double automaticThreshold(ImageReader& image, AutomaticThreshold method, const P
         image.path(), histogramLine(histogram)));
   if (const auto inside = thresholdInside(histogram, thresholdOf, *threshold))
     throw SelectionNeeded(
-        fmt::format("{}: the threshold would be {}, but {} {} (a round field of view?): say that "
-                    "the scan is a cylinder, or choose one of the two by its value",
+        fmt::format("{}: the threshold would be {}, but {} {} (a round field of view?): {}, or "
+                    "choose one of the two by its value",
                     image.path(), shortestDecimal(*threshold), shortestDecimal(*inside),
-                    cornerText(histogram)),
-        true);
+                    cornerText(histogram),
+                    isBox(part) ? "say that the scan is a cylinder" : "give a smaller region"),
+        isBox(part));
   return *threshold;
 }
 
-/// An image of which the middle rows tell the kind, at little cost.
-detail::CountedImage sampled(ImageReader& image, const Part& part) {
-  return {image, detail::middleRows(image.info().size), !part};
-}
-
-std::optional<double> cornerOfGray(const Histogram& histogram, int slices) {
-  const bool enough = slices >= kCornerSlices;
-  if (!enough || !histogram.corner || kindOf(histogram) != ImageKind::gray) return std::nullopt;
+/// The value at the corners of all slices, if it stands around a gray scan.
+std::optional<double> cornerOfGray(const Histogram& histogram, std::optional<double> corner) {
+  if (!corner || kindOf(histogram) != ImageKind::gray) return std::nullopt;
   // A circle leaves 21 % of its square; what most voxels have is the pore of a scan without noise.
   constexpr double kMostAround = 0.4;
-  const int64_t around = voxelsFrom(histogram, *histogram.corner) -
-                         voxelsFrom(histogram, *histogram.corner + histogram.width);
-  return double(around) <= kMostAround * double(histogram.finite) ? histogram.corner : std::nullopt;
+  const int64_t around =
+      voxelsFrom(histogram, *corner) - voxelsFrom(histogram, *corner + histogram.width);
+  return double(around) <= kMostAround * double(histogram.finite) ? corner : std::nullopt;
 }
 
 /// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
@@ -246,35 +269,37 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
     throw InvalidInput(open()->path() +
                        ": a Gaussian leaves no voxel the value of a phase: write the phase as a "
                        "volume of its own first, or choose by a threshold");
-  const auto image = [&] { return filteredImage(open(), gray); };
   const bool automatic = gray.automatic != AutomaticThreshold::none;
   Selection chosen = selection.value_or(Selection{});
   if (automatic) {
     detail::WorkPart counting(interrupter, 0, 50);
     const bool invert = chosen.invert;
-    chosen = Selection::threshold(automaticThreshold(*image(), gray.automatic, part, &counting));
+    const FilteredScan scan(open(), gray, part);
+    chosen = Selection::threshold(automaticThreshold(scan, gray.automatic, part, &counting));
     chosen.invert = invert;
   }
   detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
   const bool needsWhole = gray.low || gray.despeckle > 1;
   const TakeLayer takeRead = needsWhole ? nullptr : take;
-  const std::unique_ptr<ImageReader> opened = image();
+  const FilteredScan scan(open(), gray, part);
+  const ImageSize size = scan.filtered->info().size;
   const auto rowsIn = [&](const Domain& domain) {
-    return detail::rowsOf({CoordBBox::inf(), domain}, opened->info().size);
+    return detail::rowsOf({CoordBBox::inf(), domain}, size);
   };
-  detail::NonFiniteCount read(*opened, part ? rowsIn(part->domain) : nullptr);
+  detail::NonFiniteCount read(*scan.filtered, part ? rowsIn(part->domain) : nullptr);
   ImageObject object;
   if (!gray.low && chosen.kind == Selection::Kind::nonZero) {
-    object = plainMask(read, chosen, part, &reading, takeRead);
+    object = plainMask(read, chosen, part, scan.padded, &reading, takeRead);
   } else {
-    detail::CountedImage counted = sampled(read, part);
     if (gray.low) {
-      object = hysteresisMask(counted, *gray.low, chosen, part, &reading);
+      object = hysteresisMask(read, *gray.low, chosen, part, &reading);
     } else {
-      const PartMasks found = readPart(counted, {chosen}, part, &reading, takeRead);
+      const PartMasks found = readPart(read, {chosen}, part, &reading, takeRead);
       object = {found.masks[0], found.leftOut};
     }
-    object.corner = cornerOfGray(counted.histogram(), opened->info().size.z);
+    const int slices = part ? detail::boxOf(*part, size).dim().z() : size.z;
+    if (isBox(part) && scan.padded.isAtCorners() && slices >= kCornerSlices)
+      object.corner = cornerOfGray(scan.sample->histogram(), scan.padded.corner());
   }
   object.nans = read.nans();
   object.infinities = read.infinities();

@@ -58,7 +58,7 @@ struct ImageObject {
   /// No values were chosen, and the image is one of labels, which are all in one mask now.
   bool fromLabels = false;
   /// The one value at the four corners of all slices of a gray image, as around a round field of
-  /// view: of kCornerSlices and more that were read without a part.
+  /// view: of kCornerSlices and more that were read whole, or of a box with padding at a corner.
   std::optional<double> corner = std::nullopt;
   int64_t nans = 0;        ///< voxels of the domain that are NaN; none is object
   int64_t infinities = 0;  ///< voxels of the domain that are infinite; they count by their sign

@@ -191,8 +191,8 @@ RowParts middleRows(const ImageSize& size) {
   };
 }
 
-CountedImage::CountedImage(ImageReader& image, RowParts parts, bool corners)
-    : image_(image), parts_(std::move(parts)), looksAtCorners_(corners) {
+CountedImage::CountedImage(ImageReader& image, RowParts parts, const PaddedImage* padding)
+    : image_(image), parts_(std::move(parts)), padding_(padding) {
   info_ = image.info();
   path_ = image.path();
   files_ = image.files();
@@ -203,27 +203,46 @@ void CountedImage::read(int first, int count, void* samples) {
   const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
   withSampleType(info_.type, [&](auto sample) {
     const auto* rows = static_cast<const decltype(sample)*>(samples);
-    for (size_t z = 0; z < size_t(count) && looksAtCorners_; ++z) {
-      const auto *firstRow = rows + z * nx * ny, *lastRow = firstRow + (ny - 1) * nx;
-      lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
-                     double(lastRow[nx - 1])});
-    }
-    forEachRowPart(rows, info_.size, first, count, parts_, [&](const auto* values, size_t length) {
-      builders_.local().addRow(values, length);
+    forEachRowPart(rows, info_.size, first, count, parts_, [&](const auto* part, size_t length) {
+      const auto at = size_t(part - rows);
+      add(part, int(at % nx), int(at / nx % ny), first + int(at / nx / ny), length);
     });
   });
 }
 
-void CountedImage::lookAtCorners(const double (&corners)[4]) {
-  if (!corner_) corner_ = corners[0];
-  for (const double corner : corners) cornersDiffer_ |= !(corner == *corner_);
+/// Adds a part of a row that begins at x.
+template <typename T>
+void CountedImage::add(const T* samples, int x, int y, int z, size_t length) {
+  Counts& counts = counts_.local();
+  if (!padding_) return counts.inside.addRow(samples, length);
+  const int end = x + int(length);
+  const auto between = [&](std::pair<int, int> row) {
+    const int from = std::clamp(row.first, x, end);
+    return std::pair(size_t(from - x), size_t(std::clamp(row.second, from, end) - x));
+  };
+  const auto [from, to] = between(padding_->apart(y, z));
+  counts.outside.addRow(samples, from);
+  counts.inside.addRow(samples + from, to - from);
+  counts.outside.addRow(samples + to, length - to);
+  const auto [first, last] = between(padding_->within(y, z));
+  counts.padding += int64_t(first + length - last);
 }
 
 Histogram CountedImage::histogram() const {
-  HistogramBuilder all;
-  for (const HistogramBuilder& builder : builders_) all.add(builder);
+  HistogramBuilder all, inside;
+  int64_t padding = 0;
+  for (const Counts& counts : counts_) {
+    inside.add(counts.inside);
+    all.add(counts.inside);
+    all.add(counts.outside);
+    padding += counts.padding;
+  }
   Histogram histogram = all.result(info_.type);
-  if (corner_ && !cornersDiffer_ && isFinite(*corner_)) histogram.corner = corner_;
+  histogram.corner = padding_ ? padding_->corner() : std::nullopt;
+  if (!histogram.corner || padding == 0) return histogram;
+  histogram.padding = padding;
+  auto rest = std::make_shared<const Histogram>(inside.result(info_.type));
+  if (rest->finite > 0) histogram.inside = std::move(rest);
   return histogram;
 }
 

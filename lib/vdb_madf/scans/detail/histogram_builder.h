@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/scans/detail/padded_image.h"
 #include "vdb_madf/scans/histogram.h"
 
 namespace vdb_madf::detail {
@@ -80,22 +81,24 @@ void forEachRowPart(const T* samples, const ImageSize& size, int first, int coun
 /// Reads another image and counts what it reads.
 class CountedImage : public ImageReader {
  public:
-  explicit CountedImage(ImageReader& image) : CountedImage(image, nullptr, true) {}
   /// @param parts absent: whole rows
-  /// @param corners whether the corners of the slices are looked at
-  CountedImage(ImageReader& image, RowParts parts, bool corners);
+  /// @param padding of the scan that the image is, or is made of; absent: it is not looked for
+  CountedImage(ImageReader& image, RowParts parts, const PaddedImage* padding = nullptr);
   void read(int first, int count, void* samples) override;
   Histogram histogram() const;  ///< of the slices read so far
 
  private:
-  void lookAtCorners(const double (&corners)[4]);
+  struct Counts {
+    HistogramBuilder inside, outside;
+    int64_t padding = 0;
+  };
+  template <typename T>
+  void add(const T* samples, int x, int y, int z, size_t length);
 
   ImageReader& image_;
   const RowParts parts_;
-  const bool looksAtCorners_;
-  std::optional<double> corner_;
-  bool cornersDiffer_ = false;
-  mutable PerThread<HistogramBuilder> builders_;
+  const PaddedImage* const padding_;
+  mutable PerThread<Counts> counts_;
 };
 
 }  // namespace vdb_madf::detail

@@ -87,11 +87,12 @@ RowParts rowsOf(const ScanPart& part, const ImageSize& size) {
   };
 }
 
-Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* interrupter) {
+Histogram histogramIn(const ScanPart& part, ImageReader& image, const PaddedImage& padding,
+                      Interrupter* interrupter) {
   const ImageInfo& info = image.info();
   const CoordBBox box = domainOf(part, info.size).box();
   std::vector<char> samples(size_t(sliceBytes(info)) * size_t(std::min(kSlab, info.size.z)));
-  CountedImage counted(image, rowsOf(part, info.size), false);
+  CountedImage counted(image, rowsOf(part, info.size), &padding);
   forEachSlab(box.min().z(), box.max().z() + 1, interrupter,
               [&](int z, int count) { counted.read(z, count, samples.data()); });
   return counted.histogram();

@@ -20,7 +20,8 @@ int64_t cutTo(const ScanPart& part, Int32Grid& labels);
 RowParts rowsOf(const ScanPart& part, const ImageSize& size);
 
 /// The histogram of the voxels of an image that lie in the domain; slices without any are not read.
-/// Says nothing of corners. @throw as histogramOf()
-Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* interrupter);
+/// @param padding as of CountedImage. @throw as histogramOf()
+Histogram histogramIn(const ScanPart& part, ImageReader& image, const PaddedImage& padding,
+                      Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

@@ -205,7 +205,7 @@ std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions
   if (!options.region.any()) return std::nullopt;
   const auto image = open();
   const CoordBBox box = imageBox(image->info().size);
-  CountedImage counted(*image, middleRows(image->info().size), false);
+  CountedImage counted(*image, middleRows(image->info().size));
   std::optional<std::vector<PlanePoint>> rim;  // of the one axis that is asked for
   const auto rimAlong = [&](int axis) -> const std::vector<PlanePoint>& {
     if (!rim) rim = rimOfView(counted, axis, interrupter);
