@@ -181,7 +181,7 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   bench.mustRun("segment mask.vdb pores.vdb --invert --json s.json");
   CHECK(Json::parse(bench.bytes("s.json")).at("object_voxels") == core.inside - core.object);
   // Another domain takes its place.
-  bench.mustRun("convert g.vdb box.vdb --domain 0,0,0:47,47,47");
+  bench.mustRun("convert g.vdb box.vdb --domain 0,0,0:47,47,47 -q");
   CHECK(gridsOf(infoOf(bench, "box.vdb")) == std::set<std::string>{"grain", "manifold"});
   CHECK_THAT(bench.run("compare g.vdb box.vdb").err,
              Contains("domains differ: [4, 4, 0] to [43, 43, 47] (region, " + voxels));
@@ -298,9 +298,10 @@ TEST_CASE("region: a crop beyond the scan and a mask of other voxels are said", 
   const Bench bench;
   const Core core(bench);
   const std::string segment = "segment core.npy out.vdb ";
-  CHECK_THAT(
-      bench.run(segment + "--crop 8,0,0:48,47,47").err,
-      Contains("core.npy: the crop reaches beyond the scan along x, which goes from 0 to 47"));
+  const std::string beyond =
+      "reaches beyond the scan, which goes from 0 to 47 along x, 0 to 47 along z";
+  CHECK_THAT(bench.run(segment + "--crop 8,0,0:48,47,48").err,
+             Contains("core.npy: the crop " + beyond));
   bench.mustRun(segment + "--crop 8,0,0:47,47,47");
   bench.mustRun("convert view.npy view.vdb --voxel-size 9um");
   CHECK_THAT(bench.run(segment + "--roi view.vdb --voxel-size 8um").err,
@@ -312,6 +313,25 @@ TEST_CASE("region: a crop beyond the scan and a mask of other voxels are said", 
              Contains("out.vdb: was segmented in voxels of other proportions"));
   CHECK(bench.run("convert out.vdb other.vdb --voxel-size 2um").err.find("proportions") ==
         std::string::npos);
+}
+
+TEST_CASE("region: a domain beyond the scan is said", "[region]") {
+  const Bench bench;
+  bench.mustRun("generate pack p.tif --size 24 --radius 5");
+  bench.mustRun("segment p.tif g.vdb -q");
+  bench.mustRun("segment p.tif g.slabs -q");
+  bench.mustRun("convert g.vdb g.npy -q");
+  const std::string domain = " --domain 0,0,0:24,23,24", fits = " --domain 0,0,0:23,22,23";
+  for (const std::string verb :
+       {"segment p.tif o.vdb", "segment p.tif o.slabs", "segment p.tif o.vdb --crop 0,0,0:9,9,9",
+        "sweep p.tif s.csv", "measure g.vdb t", "measure g.npy t", "measure g.slabs t",
+        "convert g.vdb o.vdb", "verify g.vdb p.tif"}) {
+    CAPTURE(verb);
+    const std::string said = bench.run(verb + domain).err;
+    CHECK_THAT(said, Contains(": the domain reaches beyond the scan, which goes from 0 to 23 along "
+                              "x, 0 to 23 along z: what lies outside counts as scanned"));
+    CHECK_THAT(bench.run(verb + fits).err, !Contains("beyond"));
+  }
 }
 
 TEST_CASE("region: Otsu's threshold is that of the core", "[region]") {

@@ -56,7 +56,7 @@ Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& option
                             Interrupter* interrupter) {
   const auto labels = openvdb::gridPtrCast<Int32Grid>(
       detail::readGrid(path, GridUse::labels, options, interrupter));
-  if (options.domain) setDomain(*labels, *options.domain);
+  detail::giveDomain(*labels, path, options);
   if (const auto part = detail::partOf(*labels, path, options, interrupter))
     detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labeled voxel", options);
   detail::noteVoxelSize(path, storedVoxelSize(*labels), options);
@@ -70,7 +70,7 @@ Int32Grid::Ptr labelsOfImage(const std::string& path, const ImageOpener& open,
   const auto image = open();
   if (!part) {
     const Int32Grid::Ptr labels = readLabels(*image, interrupter);
-    if (options.domain) setDomain(*labels, *options.domain);
+    detail::giveDomain(*labels, path, options);
     return labels;
   }
   const Int32Grid::Ptr labels =

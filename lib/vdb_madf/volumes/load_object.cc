@@ -29,7 +29,7 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
                        ": smoothing, hysteresis and automatic thresholds are for images, and this "
                        "is a VDB file: leave them out");
   const auto grid = detail::readGrid(path, GridUse::object, options, interrupter);
-  if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
+  detail::giveDomain(*grid, path, options);  // an inversion needs it
   const auto part = detail::partOf(*grid, path, options, interrupter);
   const MaskGrid::Ptr object = objectMask(*grid, options.selection);
   if (part) detail::noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
@@ -80,7 +80,7 @@ MaskGrid::Ptr shareOfImage(const std::string& path, const ImageOpener& open,
   const MaskGrid::Ptr object = imageObject(opened, options.selection, gray, part, interrupter,
                                            slices.empty() ? [](MaskTree&) {} : take)
                                    .mask;
-  if (options.domain && !chosen) setDomain(*object, *options.domain);
+  if (!chosen) detail::giveDomain(*object, path, options);
   return object;
 }
 
@@ -91,7 +91,7 @@ MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& option
   const SlabFolder folder = openSlabFolder(path);
   const auto chosen =
       chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::object, options.grid);
-  if (options.domain) setDomain(*chosen, *options.domain);
+  detail::giveDomain(*chosen, path, options);
   const auto part = detail::partOf(*chosen, path, options, interrupter);
   const MaskGrid::Ptr object = objectMask(*chosen);
   int64_t leftOut = 0;
@@ -142,7 +142,7 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                      "NaN",
                  NoteAbout::file);
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
-  if (options.domain && !part) setDomain(*found.mask, *options.domain);
+  if (!part) detail::giveDomain(*found.mask, path, options);
   return found.mask;
 }
 

@@ -64,7 +64,7 @@ std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
 void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
   detail::noteVoxelSize(path, storedVoxelSize(grid), options);
   detail::noteProportions(path, grid, options);
-  if (options.domain) setDomain(grid, *options.domain);
+  detail::giveDomain(grid, path, options);
   if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
 }
 

@@ -44,7 +44,8 @@ struct VolumeOptions {
 };
 
 /// Gives a grid of the file at `path` the domain and the voxel size of the options, if they have
-/// any. A voxel size that differs by more than 1 % from the file's is worth a note.
+/// any. A voxel size that differs by more than 1 % from the file's is worth a note, and so is a
+/// domain that reaches beyond the file's.
 void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options);
 
 /// openImage() with `raw` and `dataset` of the options. Also says its notes, and that the voxel

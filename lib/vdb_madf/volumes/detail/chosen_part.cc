@@ -10,7 +10,6 @@
 #include <functional>
 
 #include "vdb_madf/base/detail/text.h"
-#include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
@@ -137,25 +136,6 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   return cylinder;
 }
 
-/// Says if a crop reaches beyond the scan. A side that is farther away than scans are long is one
-/// that nobody gave.
-void noteClipped(const std::string& path, const VolumeOptions& options, const ScanExtent& extent) {
-  if (!extent.domain || !options.note) return;
-  const CoordBBox &crop = *options.region.crop, &scan = extent.domain->box();
-  if (!crop.hasOverlap(scan)) return;  // that there is no voxel is said anyway
-  for (int axis = 0; axis < 3; ++axis) {
-    const int low = crop.min()[axis], high = crop.max()[axis];
-    const bool isBeyond = (low < scan.min()[axis] && low > -kMaxImageSide) ||
-                          (high > scan.max()[axis] && high < kMaxImageSide - 1);
-    if (!isBeyond) continue;
-    options.note(fmt::format("{}: the crop reaches beyond the scan along {}, which goes from {} to "
-                             "{} there: what lies outside is left out",
-                             path, kAxes[axis], scan.min()[axis], scan.max()[axis]),
-                 NoteAbout::file);
-    return;
-  }
-}
-
 ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const ScanExtent& extent,
                     Interrupter* interrupter) {
   ScanPart part;
@@ -163,7 +143,8 @@ ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const
   const auto narrow = [&](const Domain& to) { domain = domain ? domain->within(to) : to; };
   if (const auto& crop = options.region.crop) {
     part.box = *crop;
-    noteClipped(path, options, extent);
+    if (domain && crop->hasOverlap(domain->box()))  // else it is said that there is no voxel
+      noteBeyond(path, "crop", *crop, domain->box(), "is left out", options);
     narrow(*crop);
   }
   if (!options.region.mask.empty() || options.region.grid)
@@ -212,6 +193,8 @@ std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions
     return *rim;
   };
   ScanExtent extent;
+  if (options.domain)
+    noteBeyond(image->path(), "domain", *options.domain, box, "counts as scanned", options);
   extent.domain = Domain(options.domain.value_or(box));
   extent.box = box;
   extent.voxelSize = image->info().voxelSize;

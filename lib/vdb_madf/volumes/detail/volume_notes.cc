@@ -12,6 +12,7 @@
 #include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf::detail {
 
@@ -78,6 +79,31 @@ void noteProportions(const std::string& path, const openvdb::GridBase& grid,
                    ": was segmented in voxels of other proportions, which give other grains: "
                    "segment the object anew",
                NoteAbout::voxelSize);
+}
+
+void noteBeyond(const std::string& path, const std::string& what, const CoordBBox& box,
+                const CoordBBox& scan, const std::string& meaning, const VolumeOptions& options) {
+  std::string axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = box.min()[axis], high = box.max()[axis];
+    const bool isBeyond = (low < scan.min()[axis] && low > -kMaxImageSide) ||
+                          (high > scan.max()[axis] && high < kMaxImageSide - 1);
+    if (isBeyond)
+      axes += fmt::format("{}{} to {} along {}", axes.empty() ? "" : ", ", scan.min()[axis],
+                          scan.max()[axis], "xyz"[axis]);
+  }
+  if (!axes.empty() && options.note)
+    options.note(fmt::format("{}: the {} reaches beyond the scan, which goes from {}: what lies "
+                             "outside {}",
+                             path, what, axes, meaning),
+                 NoteAbout::file);
+}
+
+void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
+  if (!options.domain) return;
+  if (const auto own = storedDomain(grid))
+    noteBeyond(path, "domain", *options.domain, own->box(), "counts as scanned", options);
+  setDomain(grid, *options.domain);
 }
 
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,

@@ -26,6 +26,14 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
 void noteProportions(const std::string& path, const openvdb::GridBase& grid,
                      const VolumeOptions& options);
 
+/// Notes along which axes a box ("crop", "domain") reaches beyond a scan, and what that means. A
+/// side that is farther away than scans are long is one that nobody gave.
+void noteBeyond(const std::string& path, const std::string& what, const CoordBBox& box,
+                const CoordBBox& scan, const std::string& meaning, const VolumeOptions& options);
+
+/// Gives a grid the domain of the options, if they have one; notes where it reaches beyond its own.
+void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options);
+
 /// Notes how many voxels of a kind lie outside of the region, if any do.
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
                  const VolumeOptions& options);
