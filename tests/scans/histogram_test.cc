@@ -202,6 +202,9 @@ TEST_CASE("histogram: a line shows it between its ends", "[histogram]") {
   samples.insert(samples.end(), 250, 120);
   CHECK(histogramLine(histogramOfRow(samples), 5) == "100 |@   +| 120");
   CHECK(histogramLine(histogramOfRow<uint8_t>({3, 3}), 5) == "3 |@| 3");
+  // The ends differ, however large the values are.
+  const std::string line = histogramLine(histogramOfRow<double>({1e7 + 4, 1e7 + 35}), 5);
+  CHECK(line == "10000004 |@   @| 10000035");
 }
 
 TEST_CASE("histogram: labels are counted one by one, however wide the bins are", "[histogram]") {

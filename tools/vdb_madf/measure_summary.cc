@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "command.h"
+#include "vdb_madf/base/digits.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
@@ -42,11 +43,12 @@ void printIntervals(const std::vector<MeanInterval>& intervals, double length,
 /// How much of it all comes again by other choices.
 void printSensitivity(const Measurements& m, double length, const std::string& unit) {
   const Sensitivity& s = *m.sensitivity;
+  const int digits = digitsApart(s.threshold.low, s.threshold.high, 5);
   std::printf(
-      "  sensitivity         %d runs: threshold %.5g to %.5g, smooth %.2f to %.2f,\n"
+      "  sensitivity         %d runs: threshold %.*g to %.*g, smooth %.2f to %.2f,\n"
       "                      strictness %.4g to %.4g, gamma %.0f to %.0f\n",
-      s.runs, s.threshold.low, s.threshold.high, s.smooth.low, s.smooth.high, s.strictness.low,
-      s.strictness.high, s.gamma.low, s.gamma.high);
+      s.runs, digits, s.threshold.low, digits, s.threshold.high, s.smooth.low, s.smooth.high,
+      s.strictness.low, s.strictness.high, s.gamma.low, s.gamma.high);
   const auto often = [](const auto& list) {
     return (long long)std::count_if(list.begin(), list.end(),
                                     [](const auto& item) { return item.recurrence->share >= 0.9; });

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/digits.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/images/detail/slabs.h"
@@ -235,7 +236,9 @@ std::string histogramLine(const Histogram& histogram, size_t characters) {
     std::string line;
     for (const double bin : bins)
       line += kHeights[size_t(std::ceil(std::sqrt(bin / most) * double(kLargest)))];
-    return detail::generalDecimal(low, 6) + " |" + line + "| " + detail::generalDecimal(high, 6);
+    const int digits = digitsApart(low, high, 6);
+    return detail::generalDecimal(low, digits) + " |" + line + "| " +
+           detail::generalDecimal(high, digits);
   }
   return detail::generalDecimal(low, 6) + " |" + kHeights[kLargest] + "| " +
          detail::generalDecimal(high, 6);
