@@ -116,6 +116,15 @@ TEST_CASE("volume: labels of many small grains are no gray image", "[volume]") {
   CHECK(notes == gray +
                      ": its values, from 0 to 768, are taken for labels, as was said, though they "
                      "lie as in a gray image\n");
+  // Runs of two, as a median leaves them, are taken with a note.
+  LabelMap smooth;
+  for (const Coord& p : CoordBBox(Coord(0), Coord(15)))
+    smooth[p] = 1 + strewn[Coord(p.x() & ~1, p.y() / 3 * 3, p.z())] % 150;
+  writeImage(gray, *labelGrid(smooth), box, SampleType::int32);
+  notes.clear();
+  options.areLabels = false;
+  loadLabels(gray, options);
+  CHECK_THAT(notes, Contains("taken for labels, though they lie as in a gray image, which is"));
 }
 
 TEST_CASE("volume: domain and voxel size of the options replace the file's", "[volume]") {

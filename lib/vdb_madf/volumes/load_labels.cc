@@ -24,32 +24,35 @@ namespace {
 /// A gray scan would have millions of grains: it has many values, and hardly two voxels side by
 /// side have the same. So have labels of grains that are a voxel or two wide; but theirs lie close
 /// together, where those of a gray value lie anywhere. Ordinary labels have longer runs, and are
-/// not read a second time.
+/// not read a second time. A scan that was smoothed has longer runs, too, and is noted.
 void checkLabels(const ImageOpener& open, const VolumeOptions& options, Interrupter* interrupter) {
   constexpr double kNoise = 1.5;
   constexpr double kScattered = 0.2;  // between a tenth, of a thousand grains, and 1/3
   constexpr size_t kFewValues = 100;
   const auto image = open();
   const Histogram values = histogramOf(*image, interrupter);
-  if (values.counts.size() <= kFewValues || kindOf(values) != ImageKind::gray ||
-      meanRun(values) >= kNoise)
-    return;
+  if (values.counts.size() <= kFewValues || kindOf(values) != ImageKind::gray) return;
+  const bool isNoisy = meanRun(values) < kNoise;
+  if (!isNoisy && (options.areLabels || !options.note)) return;
   constexpr double kMost = 2147483647;
   const bool couldBe =
       values.whole && values.notFinite == 0 && values.max <= kMost && values.min >= -kMost - 1;
+  if (!couldBe && !isNoisy) return;
   if (couldBe && valueSpread(*open(), interrupter) < kScattered) return;
   const std::string range = fmt::format("{} to {}", detail::shortestDecimal(values.min),
                                         detail::shortestDecimal(values.max));
-  if (!couldBe || !options.areLabels)
+  if (isNoisy && (!couldBe || !options.areLabels))
     throw InvalidInput(fmt::format("{}: is a gray image, with values from {}, not labels: segment "
                                    "it first",
                                    image->path(), range),
                        couldBe ? Hint::areLabels : Hint::none);
   if (options.note)
-    options.note(fmt::format("{}: its values, from {}, are taken for labels, as was said, though "
-                             "they lie as in a gray image",
-                             image->path(), range),
-                 NoteAbout::file);
+    options.note(
+        fmt::format("{}: its values, from {}, are taken for labels{}, though they lie as in "
+                    "a gray image{}",
+                    image->path(), range, isNoisy ? ", as was said" : "",
+                    isNoisy ? "" : ", which is to be segmented first"),
+        NoteAbout::file);
 }
 
 Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& options,
