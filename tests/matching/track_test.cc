@@ -31,10 +31,12 @@ LabelMap moved(const LabelMap& voxels, const Coord& shift) {
   return result;
 }
 
-LabelMap within(const LabelMap& voxels, const std::optional<CoordBBox>& box) {
+/// Those in a domain that has moved.
+LabelMap within(const LabelMap& voxels, const std::optional<Domain>& domain,
+                const Coord& shift = Coord(0)) {
   LabelMap result;
   for (const auto& [p, label] : voxels)
-    if (!box || box->isInside(p)) result[p] = label;
+    if (!domain || domain->isInside(p - shift)) result[p] = label;
   return result;
 }
 
@@ -77,17 +79,35 @@ LabelMap cells(unsigned seed, int side, int count) {
   return voxels;
 }
 
+/// The part of a box that is in a cylinder along z through its middle.
+Domain withoutCorners(const Domain& domain) {
+  const CoordBBox& box = domain.box();
+  const Coord twice = box.min() + box.max(), dim = box.dim();
+  MaskTree region;
+  for (auto p = box.begin(); p; ++p) {
+    const int x = 2 * (*p).x() - twice.x(), y = 2 * (*p).y() - twice.y();
+    if (x * x + y * y <= dim.x() * dim.y()) region.setValueOn(*p);
+  }
+  return Domain(region);
+}
+
+/// Leaves what a scan shows.
+void cut(Int32Grid& grid, LabelMap& voxels, const Domain& domain) {
+  voxels = within(voxels, domain);
+  grid.clear();
+  for (const auto& [p, label] : voxels) grid.tree().setValueOn(p, label);
+  setDomain(grid, domain);
+}
+
 using Linked = std::map<int32_t, std::set<int32_t>>;
 
 /// By the definitions of track.h, voxel by voxel.
 void requireAsDefined(const Tracks& tracks, const LabelMap& before, const LabelMap& after,
-                      const std::optional<CoordBBox>& domainBefore,
-                      const std::optional<CoordBBox>& domainAfter, const TrackOptions& options) {
+                      const std::optional<Domain>& domainBefore,
+                      const std::optional<Domain>& domainAfter, const TrackOptions& options) {
   const Coord& shift = tracks.shift;
-  std::optional<CoordBBox> movedDomain;
-  if (domainBefore)
-    movedDomain = CoordBBox(domainBefore->min() + shift, domainBefore->max() + shift);
-  const LabelMap a = within(moved(before, shift), domainAfter), b = within(after, movedDomain);
+  const LabelMap a = within(moved(before, shift), domainAfter),
+                 b = within(after, domainBefore, shift);
   const auto sizesA = volumes(a), sizesB = volumes(b);
   std::map<std::pair<int32_t, int32_t>, int64_t> overlaps;
   for (const auto& [p, label] : a)
@@ -286,18 +306,17 @@ TEST_CASE("track: as defined, on samples that were moved and edited", "[track]")
     options.minFaces = 1 + int(seed % 3) * 4;
     if (seed % 4 == 0) options.share = seed % 8 ? 0.9 : 0.2;
     if (seed % 5 == 0) options.shift = Coord(int(random() % 30) - 15, 1, 0);
-    std::optional<CoordBBox> domainBefore, domainAfter;
+    std::optional<Domain> domainBefore, domainAfter;
     const auto a = labelGrid(before), b = labelGrid(after);
     if (seed % 3 > 0) {
       domainBefore = CoordBBox(Coord(-7, 3, -22), Coord(14, 24, -1));
-      setDomain(*a, *domainBefore);
+      if (seed % 2) domainBefore = withoutCorners(*domainBefore);
+      cut(*a, before, *domainBefore);
     }
     if (seed % 3 > 1) {  // the faces of what is seen lie elsewhere: some grains are cut or gone
       domainAfter = CoordBBox(Coord(-7, 9, -30), Coord(11, 30, -1));
-      after = within(after, domainAfter);
-      b->clear();
-      for (const auto& [p, label] : after) b->tree().setValueOn(p, label);
-      setDomain(*b, *domainAfter);
+      if (seed % 4 < 2) domainAfter = withoutCorners(*domainAfter);
+      cut(*b, after, *domainAfter);
     }
     const Tracks tracks = track(*a, *b, options);
     CHECK(tracks.shift == options.shift.value_or(shift));

@@ -48,13 +48,6 @@ void checkUsed(const TrackOptions& options) {
   if (options.sureFaces != usual.sureFaces) refuse("how many faces break for sure", why);
 }
 
-/// The box of a domain that has moved; all there is, if it is unknown.
-CoordBBox shownBox(const Int32Grid& labels, const Coord& shift) {
-  const auto domain = storedDomain(labels);
-  if (!domain) return CoordBBox::inf();
-  return {domain->box().min() + shift, domain->box().max() + shift};
-}
-
 TrackedGrains grainsOf(const Int32Grid& labels, Interrupter* interrupter) {
   TrackedGrains grains;
   for (const auto& [number, voxels] : labelSizes(labels, interrupter)) {
@@ -173,9 +166,9 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
                                                    interrupter);
   Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
   const auto first =
-      detail::movedLabels(before, tracks.shift, shownBox(after, Coord(0)), interrupter);
+      detail::movedLabels(before, tracks.shift, {storedDomain(after), Coord(0)}, interrupter);
   const auto second =
-      detail::movedLabels(after, Coord(0), shownBox(before, tracks.shift), interrupter);
+      detail::movedLabels(after, Coord(0), {storedDomain(before), tracks.shift}, interrupter);
   const std::vector<Overlap> overlaps = compare(*first, *second, interrupter).overlaps;
   for (const Overlap& overlap : overlaps) {
     addOverlap(sides.before, overlap.truth, overlap.test, overlap.voxels);

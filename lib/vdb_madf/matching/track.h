@@ -150,14 +150,14 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 /// may have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
 ///
 /// The shift, if it is not given, is the one that most labeled voxels share (detail/rigid_shift.h:
-/// findShift()). What both volumes show is the box of the one's domain in that of the other's;
-/// where a domain is unknown, all. Two grains are linked if their common voxels are at least
+/// findShift()). What both volumes show is the one's domain, box or region, in that of the
+/// other; where a domain is unknown, all. Two grains are linked if their common voxels are at least
 /// `share` of those that the smaller of them has there. The track of a grain after: links in
 /// descending order of their voxels (then by ascending numbers) give the number of the grain before
 /// to the grain after, unless either has been used; what is left gets numbers above all of before,
 /// in ascending order; if before are tracked labels, above all that their series has had.
 /// With a motion matchGrains() says which grains are linked, and what both volumes show are the
-/// grains that would lie wholly in the other's box where their neighbors say. Besides, grains that
+/// grains that would lie wholly in the other's domain where their neighbors say. Besides, grains that
 /// were not followed are linked with the one that half of their voxels or more lie in where
 /// neighbors say (and a tenth of its voxels at least): if there are several and their volumes sum
 /// up to 0.6 to 1.6 of its own, or, with its partner, nearer to its own than that alone. So they

@@ -21,14 +21,21 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Whether a ball as large as a grain lies in a box.
-bool isWithin(const CoordBBox& box, const openvdb::Vec3d& center, double volume) {
+/// Whether a ball as large as a grain lies in a domain; of a region 26 points of the ball do.
+bool isWithin(const Domain& domain, const openvdb::Vec3d& center, double volume) {
   constexpr double kBall = 0.2387324146378430;  // 3 / (4 pi)
   const double radius = std::cbrt(kBall * volume);
+  const CoordBBox& box = domain.box();
   for (int axis = 0; axis < 3; ++axis)
     if (!(center[axis] - radius >= box.min()[axis] - 0.5 &&
           center[axis] + radius <= box.max()[axis] + 0.5))
       return false;
+  if (domain.isBox()) return true;
+  for (int n = 0; n < 27; ++n) {
+    openvdb::Vec3d step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+    step.normalize();  // the middle stays zero
+    if (!domain.isInside(Coord::round(center + radius * step))) return false;
+  }
   return true;
 }
 
@@ -41,7 +48,7 @@ openvdb::Vec3d placeOf(const FollowedGrain& match, const openvdb::Vec3d& partner
 /// Links grains that were followed, and judges all. Of those that were not it is asked whether both
 /// volumes show them.
 void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& after,
-          const FollowedGrains& followed, const CoordBBox& boxBefore, const CoordBBox& boxAfter) {
+          const FollowedGrains& followed, const Domain& domainBefore, const Domain& domainAfter) {
   std::map<int32_t, const GrainFeatures*> ofAfter;
   for (const GrainFeatures& grain : after.grains) ofAfter[grain.grain] = &grain;
   std::vector<openvdb::Vec3d> places;  // after, of those whose gradient is known
@@ -59,7 +66,7 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
         move.displacement = match.place - grain.center;
         move.gradient = match.nearby;
       }
-      const bool isSeen = !match.isPlaced || isWithin(boxAfter, match.place, grain.volume);
+      const bool isSeen = !match.isPlaced || isWithin(domainAfter, match.place, grain.volume);
       here.fate = isSeen ? GrainFate::lost : GrainFate::outside;
       continue;
     }
@@ -90,7 +97,7 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
     const openvdb::Vec3d from =
         before.grains[known[near]].center +
         *inverseOf(*followed.grains[known[near]].gradient) * (grain.center - cells[near]);
-    if (!isWithin(boxBefore, from, grain.volume)) here.fate = GrainFate::outside;
+    if (!isWithin(domainBefore, from, grain.volume)) here.fate = GrainFate::outside;
   }
 }
 
@@ -240,9 +247,11 @@ void settleBonds(const BondSide& side, const TrackOptions& options, Interrupter*
   }
 }
 
-CoordBBox requiredBox(const AnyLabels& labels) {
+Domain requiredDomain(const AnyLabels& labels) {
   const Int32Grid& about = aboutOf(labels);
-  if (!std::holds_alternative<Int32Grid::ConstPtr>(labels) && !storedDomain(about))
+  const auto domain = storedDomain(about);
+  if (domain) return *domain;
+  if (!std::holds_alternative<Int32Grid::ConstPtr>(labels))
     throw InvalidInput("labels in slabs are followed within their domain, which is unknown");
   return boxOf(about);
 }
@@ -268,7 +277,7 @@ Tracks motionTracks(const AnyLabels& before, const AnyLabels& after, const Track
                     Interrupter* interrupter) {
   for (const AnyLabels* labels : {&before, &after})
     requireCubicVoxels(aboutOf(*labels), "following grains through a motion");
-  const CoordBBox boxBefore = requiredBox(before), boxAfter = requiredBox(after);
+  const Domain domainBefore = requiredDomain(before), domainAfter = requiredDomain(after);
   ScanLabels labelsBefore(before), labelsAfter(after);
   const ScanSums first = scanSums(labelsBefore, openDomain(aboutOf(before)), interrupter),
                  second = scanSums(labelsAfter, openDomain(aboutOf(after)), interrupter);
@@ -281,7 +290,7 @@ Tracks motionTracks(const AnyLabels& before, const AnyLabels& after, const Track
   tracks.motion = options.motion->kind;
   tracks.whole = followed->whole;
   Sides sides{grainsOf(first.set), grainsOf(second.set), {}, {}};
-  link(sides, tracks, first.set, second.set, *followed, boxBefore, boxAfter);
+  link(sides, tracks, first.set, second.set, *followed, domainBefore, domainAfter);
   const Motions motions = motionsOf(first.set, second.set, *followed);
   linkParts(sides, tracks, labelsBefore, labelsAfter, motions, interrupter);
   tracks.lastTrack =

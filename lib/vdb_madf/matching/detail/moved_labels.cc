@@ -3,6 +3,8 @@
 
 #include "vdb_madf/matching/detail/moved_labels.h"
 
+#include <openvdb/tree/ValueAccessor.h>
+
 #include <array>
 #include <memory>
 #include <vector>
@@ -30,14 +32,32 @@ std::vector<Coord> targets(const std::vector<const Leaf*>& leaves, const Coord& 
   return origins;
 }
 
+/// Tells the voxels that a scan shows.
+class IsShown {
+ public:
+  explicit IsShown(const Shown& shown)
+      : box_(shown.domain ? shown.domain->box() : CoordBBox::inf()), shift_(shown.shift) {
+    if (shown.domain && !shown.domain->isBox()) region_.emplace(*shown.domain->region());
+  }
+  bool operator()(const Coord& p) const {
+    return region_ ? region_->isValueOn(p - shift_) : box_.isInside(p - shift_);
+  }
+
+ private:
+  CoordBBox box_;
+  Coord shift_;
+  std::optional<openvdb::tree::ValueAccessor<const MaskTree>> region_;
+};
+
 /// The leaf at an origin, of the (up to eight) leaves that its voxels come from; null if empty.
 std::unique_ptr<Leaf> gathered(const Int32Tree& tree, const Coord& origin, const Coord& shift,
-                               const CoordBBox& within) {
+                               const Shown& shown) {
   const Coord from = origin - shift, base = from & ~7, inBase = from - base;
   std::array<const Leaf*, 8> sources{};
   for (int n = 0; n < 8; ++n)
     sources[size_t(n)] =
         tree.probeConstLeaf(base.offsetBy(8 * (n >> 2), 8 * (n >> 1 & 1), 8 * (n & 1)));
+  const IsShown isShown(shown);
   auto leaf = std::make_unique<Leaf>(origin, 0);
   for (int offset = 0; offset < int(Leaf::SIZE); ++offset) {
     const int x = offset >> 6, y = offset >> 3 & 7, z = offset & 7;
@@ -46,7 +66,7 @@ std::unique_ptr<Leaf> gathered(const Int32Tree& tree, const Coord& origin, const
     if (!source) continue;
     const auto at = openvdb::Index((fromX & 7) << 6 | (fromY & 7) << 3 | (fromZ & 7));
     const int32_t label = labelAt(*source, source->buffer().data(), at);
-    if (label > 0 && within.isInside(origin.offsetBy(x, y, z)))
+    if (label > 0 && isShown(origin.offsetBy(x, y, z)))
       leaf->setValueOn(openvdb::Index(offset), label);
   }
   if (leaf->isEmpty()) leaf.reset();
@@ -55,13 +75,13 @@ std::unique_ptr<Leaf> gathered(const Int32Tree& tree, const Coord& origin, const
 
 }  // namespace
 
-Int32Grid::Ptr movedLabels(const Int32Grid& labels, const Coord& shift, const CoordBBox& within,
+Int32Grid::Ptr movedLabels(const Int32Grid& labels, const Coord& shift, const Shown& shown,
                            Interrupter* interrupter) {
   const Int32Tree::ConstPtr tree = withoutTiles(labels);
   const std::vector<Coord> origins = targets(leavesOf(*tree), shift);
   const auto result = Int32Grid::create(0);
   addLeaves(result->tree(), origins.size(), kLeafGrain, interrupter,
-            [&](size_t n) { return gathered(*tree, origins[n], shift, within); });
+            [&](size_t n) { return gathered(*tree, origins[n], shift, shown); });
   return result;
 }
 
