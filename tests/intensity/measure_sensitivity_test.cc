@@ -143,6 +143,21 @@ TEST_CASE("measure_sensitivity: of a dark object and of hysteresis", "[measure_s
   }
 }
 
+TEST_CASE("measure_sensitivity: refuses a scan of which the threshold makes another object",
+          "[measure_sensitivity]") {
+  Sample sample(bridgedBalls(1800), 1500);
+  const std::vector<float> own = sample.values;
+  for (const double factor : {1 / 256., 0.8, 1.6}) {
+    CAPTURE(factor);
+    for (size_t i = 0; i < own.size(); ++i) sample.values[i] = float(factor * own[i]);
+    CHECK_THROWS_WITH(sample.recurring(fixed()), Contains("make another object of it, ") &&
+                                                     Contains(" % of its voxels are others"));
+  }
+  sample.values = own;
+  for (int i = 0; i < 6; ++i) sample.values[size_t(i)] = 3000;  // beside 8,500
+  CHECK(sample.recurring(fixed()).bonds[0].recurrence->share == 1);
+}
+
 TEST_CASE("measure_sensitivity: refuses labels that do not tell how they were made",
           "[measure_sensitivity]") {
   Sample sample(bridgedBalls(1800), 1500);

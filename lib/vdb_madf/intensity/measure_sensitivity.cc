@@ -14,6 +14,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/matching/compare.h"
 #include "vdb_madf/scans/filtered_image.h"
@@ -31,6 +32,8 @@ constexpr double kSmoothShare = 0.5;     // of the blur
 constexpr double kUsualBlur = 0.7;       // voxels, where a scan tells none
 constexpr double kStrictness = 3;
 constexpr double kGamma = 8;
+/// Of the voxels of an object: a mask that was cropped after it was despeckled differs by less.
+constexpr double kOtherVoxels = 0.001;
 
 /// How labels were made of a scan.
 struct Choices {
@@ -179,6 +182,20 @@ class Recurrences {
   std::vector<Met> grains_, bonds_;
 };
 
+/// A scan is the one that labels were made of if their choices make their voxels of it.
+void checkObject(const Int32Grid& labels, const MaskGrid& object, const std::string& path) {
+  const MaskGrid::Ptr labeled = objectMask(labels);
+  const auto own = double(labeled->activeVoxelCount());
+  double others = own + double(object.activeVoxelCount());
+  labeled->tree().topologyIntersection(object.tree());
+  others -= 2 * double(labeled->activeVoxelCount());
+  if (others <= kOtherVoxels * own) return;
+  throw InvalidInput(fmt::format(
+      "{}: the threshold and filters of the labels make another object of it, {:.1f} % of its "
+      "voxels are others: give the scan as it was segmented, of the same values and voxels",
+      path, 100 * others / std::max(1.0, own)));
+}
+
 /// The numbers of a sample that intervals are told of.
 std::vector<MeanInterval> numbersOf(const Measurements& m) {
   double area = 0;
@@ -238,8 +255,16 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
     if (scan.first != Coord(0))
       throw InvalidInput(scan.image->path() + ": is a part of the scan: give the whole one");
   }
-  Sensitivity sensitivity = boundsOf(choices, options, measured.scan, open, interrupter);
   const Domain& domain = *choices.segment.domain;
+  const auto objectOf = [&](const Choices& chosen, Interrupter* reading) {
+    const auto image = [&] { return std::move(open().image); };
+    return imageObject(image, chosen.selection, chosen.gray, ScanPart{domain.box(), domain},
+                       reading)
+        .mask;
+  };
+  detail::WorkPart before(interrupter, 0, 0);
+  checkObject(labels, *objectOf(choices, &before), open().image->path());
+  Sensitivity sensitivity = boundsOf(choices, options, measured.scan, open, interrupter);
   MeasureOptions measuring;
   measuring.boundary = choices.segment.boundary;
   measuring.domain = domain;
@@ -249,11 +274,8 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
   for (int run = 1; run <= options.runs; ++run) {
     detail::WorkPart part(interrupter, 100 * (run - 1) / options.runs, 100 * run / options.runs);
     const Choices varied = choicesOfRun(choices, sensitivity, run);
-    const auto image = [&] { return std::move(open().image); };
     detail::WorkPart reading(&part, 0, 20), segmenting(&part, 20, 70), rest(&part, 70, 100);
-    const MaskGrid::Ptr object =
-        imageObject(image, varied.selection, varied.gray, ScanPart{domain.box(), domain}, &reading)
-            .mask;
+    const MaskGrid::Ptr object = objectOf(varied, &reading);
     copyProvenance(labels, *object);
     const Segmentation again = segment(*object, varied.segment, &segmenting);
     const Measurements there = measure(*again.grain, measuring, &rest);

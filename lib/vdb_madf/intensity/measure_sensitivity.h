@@ -44,13 +44,16 @@ struct SensitivityOptions {
 /// of either (intersection over union, compare.h). A bond does if the partners of its grains, those
 /// with most voxels in common, are two and have a bond.
 ///
+/// That the scan is the one of the labels is known by its object: that which the choices of the
+/// labels make of it must be theirs, but for a thousandth of the voxels.
+///
 /// The scan is read, segmented and measured in each run. Memory: that of segment() and measure(),
 /// besides the labels.
 /// @param open the scan, anew for each run
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line, if the labels do not tell how they were made (a threshold of a
-///   scan, and merging by score), the scan's box does not fit, or it is no gray one;
-///   what reading, segmenting and measuring throw; Interrupted.
+///   scan, and merging by score), the scan's box does not fit, it is no gray one, or its object is
+///   another; what reading, segmenting and measuring throw; Interrupted.
 void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>& open,
                         const SensitivityOptions& options, Measurements& measured,
                         Interrupter* interrupter = nullptr);
