@@ -4,6 +4,7 @@
 #include "vdb_madf/intensity/measure_sensitivity.h"
 
 #include <algorithm>
+#include <random>
 
 #include "support/catch.h"
 #include "support/known_bodies.h"
@@ -13,6 +14,7 @@
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/image_object.h"
 #include "vdb_madf/segmentation/segment.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -97,6 +99,21 @@ TEST_CASE("measure_sensitivity: the same choices give the same again", "[measure
   shows(5, "mean_coordination", m.sample.meanCoordination);
 }
 
+TEST_CASE("measure_sensitivity: runs are segmented with the boundary of the labels",
+          "[measure_sensitivity]") {
+  std::mt19937 random(1);  // many grains that faces cut
+  std::vector<float> values = bridgedBalls(1000);
+  for (float& value : values) value = float(random() % 1000);
+  GrayOptions gray;
+  gray.smooth = 2;
+  const Sample sample(values, 500, gray);
+  SensitivityOptions options = fixed();
+  options.measure.boundary = Boundary::closed;
+  const Measurements m = sample.recurring(options);
+  for (const GrainMeasures& grain : m.grains) CHECK(grain.recurrence->share == 1);
+  CHECK(*m.sensitivity->intervals[4].mean == Approx(m.sample.specificSurface));
+}
+
 TEST_CASE("measure_sensitivity: a bond is there in the runs whose threshold the bridge exceeds",
           "[measure_sensitivity]") {
   // Of 1500 by 400: 1500, 1300, 1700, 1200 and 1600, by halves, quarters and eighths.
@@ -178,6 +195,14 @@ TEST_CASE("measure_sensitivity: refuses labels that do not tell how they were ma
   sample.labels = labels->deepCopy();
   sample.labels->insertMeta("madf_edits", openvdb::StringMetadata("drop 1"));
   CHECK_THROWS_WITH(sample.recurring(options), Contains("these were edited"));
+  // A part of them, with counts that are brought up to date or not.
+  sample.labels = labels->deepCopy();
+  sample.labels->clip(CoordBBox(Coord(0), Coord(40, 27, 27)));
+  setDomain(*sample.labels, CoordBBox(Coord(0), Coord(40, 27, 27)));
+  for (int updated = 0; updated < 2; ++updated) {
+    CHECK_THROWS_WITH(sample.recurring(options), Contains("not all that was segmented"));
+    updateCounts(*sample.labels, 2, true);
+  }
   sample.labels = labels->deepCopy();
   setDomain(*sample.labels, CoordBBox(Coord(0), Coord(55, 27, 28)));
   CHECK_THROWS_AS(sample.recurring(options), InvalidInput);

@@ -42,7 +42,7 @@ struct Choices {
   SegmentOptions segment;
 };
 
-Choices choicesOf(const Int32Grid& labels, const MeasureOptions& options) {
+Choices choicesOf(const Int32Grid& labels) {
   const auto reading = storedReading(labels);
   if (!reading)
     throw InvalidInput(
@@ -57,6 +57,11 @@ Choices choicesOf(const Int32Grid& labels, const MeasureOptions& options) {
     throw InvalidInput(
         "the labels do not tell that they were merged by score: what another merging hangs on is "
         "not known");
+  if (!hasSegmentedVoxels(labels))
+    throw InvalidInput(
+        "the labels are not all that was segmented, or of other voxels, and grains hang on what "
+        "was beside them: measure the sensitivity of the whole labels, or crop the scan and "
+        "segment that");
   Choices choices{reading->selection, reading->gray, {}};
   choices.segment.merge = merging->options;
   choices.segment.tidy = merging->tidy;
@@ -66,8 +71,7 @@ Choices choicesOf(const Int32Grid& labels, const MeasureOptions& options) {
   };
   choices.segment.gamma = number("madf_gamma");
   choices.segment.fillHoles = number("madf_fill_holes");
-  choices.segment.boundary =
-      options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
+  choices.segment.boundary = storedBoundary(labels);
   choices.segment.domain = storedDomain(labels);
   return choices;
 }
@@ -245,7 +249,7 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
   if (options.runs < kMinRuns || options.runs > kMaxRuns)
     throw InvalidInput(fmt::format("a sensitivity from {} runs: must be from {} to {}",
                                    options.runs, kMinRuns, kMaxRuns));
-  const Choices choices = choicesOf(labels, options.measure);
+  const Choices choices = choicesOf(labels);
   {
     GrayScan scan = open();
     if (scan.first != Coord(0))
@@ -266,7 +270,8 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
   checkObject(labels, *objectOf(choices, &before), open().image->path());
   Sensitivity sensitivity = boundsOf(choices, options, measured.scan, open, interrupter);
   MeasureOptions measuring;
-  measuring.boundary = choices.segment.boundary;
+  measuring.boundary = options.measure.boundary == Boundary::automatic ? choices.segment.boundary
+                                                                       : options.measure.boundary;
   measuring.domain = domain;
   measuring.minFaces = options.measure.minFaces;
   Recurrences recurrences(measured);

@@ -16,7 +16,8 @@ namespace vdb_madf {
 namespace {
 
 constexpr char kGrains[] = "madf_grains", kObjectVoxels[] = "madf_object_voxels",
-               kLeaves[] = "madf_leaves", kMinGrain[] = "madf_min_grain";
+               kLeaves[] = "madf_leaves", kCriticalPoints[] = "madf_critical_points",
+               kMinGrain[] = "madf_min_grain";
 
 void setText(openvdb::GridBase& grid, const char* key, const std::string& value) {
   grid.insertMeta(key, openvdb::StringMetadata(value));
@@ -66,7 +67,7 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
   setCount(grid, "madf_cavity_voxels", counts.cavityVoxels);
   setCount(grid, "madf_medial_balls", counts.medialBalls);
   setCount(grid, "madf_kept_balls", counts.keptBalls);
-  setCount(grid, "madf_critical_points", counts.criticalPoints);
+  setCount(grid, kCriticalPoints, counts.criticalPoints);
   setCount(grid, "madf_largest_squared_distance", counts.largestSquaredDistance);
   setCount(grid, kLeaves, counts.leaves);
   describeMerging(grid, options.merge, record.tidy, counts.grains);
@@ -131,10 +132,14 @@ void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent) {
   if (!voxelsWent) return;
   setCount(grid, kObjectVoxels, int64_t(grid.activeVoxelCount()));
   setCount(grid, kLeaves, int64_t(grid.baseTree().leafCount()));
-  for (const char* key :
-       {"madf_cavities", "madf_cavity_voxels", "madf_medial_balls", "madf_kept_balls",
-        "madf_critical_points", "madf_largest_squared_distance"})
+  for (const char* key : {"madf_cavities", "madf_cavity_voxels", "madf_medial_balls",
+                          "madf_kept_balls", kCriticalPoints, "madf_largest_squared_distance"})
     grid.removeMeta(key);
+}
+
+bool hasSegmentedVoxels(const openvdb::GridBase& grid) {
+  const auto voxels = grid.getMetadata<openvdb::Int64Metadata>(kObjectVoxels);
+  return voxels && voxels->value() == int64_t(grid.activeVoxelCount()) && grid[kCriticalPoints];
 }
 
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {

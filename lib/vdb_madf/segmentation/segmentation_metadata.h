@@ -43,6 +43,9 @@ inline constexpr char kEditsKey[] = "madf_edits";
 /// then go, for they are those of the whole object. A grid without counts gets none.
 void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent);
 
+/// False if a grid no longer has the voxels that were segmented, as a crop: its counts tell.
+bool hasSegmentedVoxels(const openvdb::GridBase& grid);
+
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 
