@@ -145,8 +145,14 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   const std::string measure = "measure balls.vdb out ";
   refuses(bench, kFailed, measure + "--intensity other29.tif",
           {"other29.tif: has 29x29x29 voxels", "of a scan of 30x30x30 voxels: give the one that"});
-  CHECK(bench.run(measure + "--intensity other31.tif")
+  // Labels of our own say where they lie in a larger scan, those of an image do not.
+  bench.mustRun("segment balls.vdb own.vdb --grid object");
+  CHECK(bench.run("measure own.vdb out --intensity other31.tif")
             .err.find("other31.tif: is larger than the volume of the labels") != std::string::npos);
+  bench.mustRun("convert own.vdb part.tif --labels --crop 5,5,5:24,24,24 -q");
+  refuses(bench, kFailed, "measure part.tif out --intensity other31.tif",
+          {"other31.tif: has 31x31x31 voxels, and the labels, of 20x20x20 voxels, do not say where "
+           "in it they were cropped: give the scan cropped as they were"});
   bench.mustRun("convert balls.vdb coarse.tif --grid truth --type uint8 --voxel-size 20um");
   CHECK(bench.run(measure + "--intensity coarse.tif").err.find("voxels of") == std::string::npos);
   bench.mustRun("convert balls.vdb fine.vdb --grid truth --voxel-size 8.5um");

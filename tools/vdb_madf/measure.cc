@@ -56,6 +56,7 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) {
     scan = openScan(o.intensity, o.input, common.progress);
+    requirePlace(*scan, aboutOf(labels));
     noteOfScan(o.intensity.path, noteOnScan(*scan, aboutOf(labels)), common.progress);
   }
   const MaskGrid::Ptr binder =

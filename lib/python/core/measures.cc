@@ -287,6 +287,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   const auto noteOf = [&](const std::string& scanName, const std::string& note) {
     if (!note.empty()) notes.push_back(scanName + ": " + note);
   };
+  if (scan) requirePlace(*scan, grid);
   if (scan) noteOf("intensity", noteOnScan(*scan, grid));
   if (edges) noteOf("gray", noteOnScan(*edges, grid));
   if (const auto domain = third ? storedDomain(*third) : std::nullopt)

@@ -13,6 +13,7 @@
 #include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/dense_volume.h"
@@ -99,12 +100,29 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample) {
   placeScan(scan, sample.box);
 }
 
+namespace {
+
+/// Whether a scan goes on beyond labels that begin where it does.
+bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
+  const auto domain = storedDomain(about);
+  return domain && domain->isBox() && domain->box() != box && box.isInside(domain->box()) &&
+         domain->box().min() == box.min();
+}
+
+}  // namespace
+
+void requirePlace(const GrayScan& scan, const openvdb::GridBase& about) {
+  if (grainCount(about) || !goesOn(scan.box(), about)) return;
+  throw InvalidInput(scan.image->path() + ": has " + detail::sizeAndPlace(scan.box()) +
+                     ", and the labels, of " + detail::sizeAndPlace(boxOf(about)) +
+                     ", do not say where in it they were cropped: give the scan cropped as they "
+                     "were");
+}
+
 std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,
                        const openvdb::GridBase& about) {
   std::string note;
-  const auto domain = storedDomain(about);
-  if (domain && domain->isBox() && domain->box() != box && box.isInside(domain->box()) &&
-      domain->box().min() == box.min())
+  if (goesOn(box, about))
     note =
         "is larger than the volume of the labels: taken for the scan that they were cropped from";
   const auto own = storedVoxelSize(about);

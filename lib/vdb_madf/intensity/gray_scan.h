@@ -41,6 +41,11 @@ std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& vox
                        const openvdb::GridBase& about);
 std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about);
 
+/// Labels of an image, of an array or of another program do not say where in a larger scan they
+/// lie.
+/// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond such labels
+void requirePlace(const GrayScan& scan, const openvdb::GridBase& about);
+
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
 /// that the options name, or GridUse::object), with its background outside of its voxels; its box
 /// is its domain, or the box of its active voxels. Of the options `grid`, `dataset`, `raw`,

@@ -52,8 +52,9 @@ struct SensitivityOptions {
 /// @param open the scan, anew for each run
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line, if the labels do not tell how they were made (a threshold of a
-///   scan, and merging by score), they were edited or cropped since, the scan's box does not fit, it is no gray one, or its object is
-///   another; what reading, segmenting and measuring throw; Interrupted.
+///   scan, and merging by score), they were edited or cropped since, the scan's box does not fit,
+///   it is no gray one, or its object is another; what reading, segmenting and measuring throw;
+///   Interrupted.
 void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>& open,
                         const SensitivityOptions& options, Measurements& measured,
                         Interrupter* interrupter = nullptr);

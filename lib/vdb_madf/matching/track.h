@@ -157,8 +157,8 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 /// to the grain after, unless either has been used; what is left gets numbers above all of before,
 /// in ascending order; if before are tracked labels, above all that their series has had.
 /// With a motion matchGrains() says which grains are linked, and what both volumes show are the
-/// grains that would lie wholly in the other's domain where their neighbors say. Besides, grains that
-/// were not followed are linked with the one that half of their voxels or more lie in where
+/// grains that would lie wholly in the other's domain where their neighbors say. Besides, grains
+/// that were not followed are linked with the one that half of their voxels or more lie in where
 /// neighbors say (and a tenth of its voxels at least): if there are several and their volumes sum
 /// up to 0.6 to 1.6 of its own, or, with its partner, nearer to its own than that alone. So they
 /// are split or merged.
