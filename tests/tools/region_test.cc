@@ -181,7 +181,17 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   bench.mustRun("segment mask.vdb pores.vdb --invert --json s.json");
   CHECK(Json::parse(bench.bytes("s.json")).at("object_voxels") == core.inside - core.object);
   // Another domain takes its place.
-  bench.mustRun("convert g.vdb box.vdb --domain 0,0,0:47,47,47 -q");
+  for (const std::string verb :
+       {"convert g.vdb box.vdb", "measure g.vdb tables", "measure g.slabs tables",
+        "convert g.vdb box.npy --grid grain", "segment mask.vdb box.vdb"}) {
+    CAPTURE(verb);
+    const Outcome boxed = bench.run(verb + " --domain 0,0,0:47,47,47");
+    CHECK(boxed.exitCode == 0);
+    const std::string taken = ": a domain was given and takes the place of the file's region";
+    CHECK_THAT(boxed.err, Contains(taken));
+    CHECK(boxed.err.find(taken) == boxed.err.rfind(taken));
+  }
+  bench.run("convert g.vdb box.vdb --domain 0,0,0:47,47,47");
   CHECK(gridsOf(infoOf(bench, "box.vdb")) == std::set<std::string>{"grain", "manifold"});
   CHECK_THAT(bench.run("compare g.vdb box.vdb").err,
              Contains("domains differ: [4, 4, 0] to [43, 43, 47] (region, " + voxels));

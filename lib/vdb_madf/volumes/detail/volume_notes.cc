@@ -101,8 +101,16 @@ void noteBeyond(const std::string& path, const std::string& what, const CoordBBo
 
 void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
   if (!options.domain) return;
-  if (const auto own = storedDomain(grid))
+  const auto own = storedDomain(grid);
+  if (!regionName(grid).empty()) {
+    if (options.note)
+      options.note(path +
+                       ": a domain was given and takes the place of the file's region: what of it "
+                       "lies outside of the region counts as scanned, without an object",
+                   NoteAbout::file);
+  } else if (own) {
     noteBeyond(path, "domain", *options.domain, own->box(), "counts as scanned", options);
+  }
   setDomain(grid, *options.domain);
 }
 

@@ -31,7 +31,8 @@ void noteProportions(const std::string& path, const openvdb::GridBase& grid,
 void noteBeyond(const std::string& path, const std::string& what, const CoordBBox& box,
                 const CoordBBox& scan, const std::string& meaning, const VolumeOptions& options);
 
-/// Gives a grid the domain of the options, if they have one; notes where it reaches beyond its own.
+/// Gives a grid the domain of the options, if they have one; notes where it reaches beyond its own,
+/// and that a region goes.
 void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options);
 
 /// Notes how many voxels of a kind lie outside of the region, if any do.
