@@ -223,20 +223,27 @@ void detail::reduceEdges(std::vector<Edge>& edges) {
 
 ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                             const VoxelArray<int32_t>& power, Interrupter* interrupter) {
-  constexpr size_t kLeavesPerTable = 1024;
-  std::vector<Edge> edges;
-  std::mutex edgesMutex;
+  constexpr size_t kLeavesPerTable = 1024, kEdgesPerTable = 1 << 15;
+  std::vector<std::vector<Edge>> parts;
+  std::mutex partsMutex;
   detail::PerThread<EdgeTable> tables;
   detail::parallelFor(index.leafCount(), kLeavesPerTable, interrupter,
                       [&](size_t begin, size_t end) {
                         EdgeTable& table = tables.local();
                         table.clear();
+                        const auto empty = [&] {
+                          const std::lock_guard<std::mutex> lock(partsMutex);
+                          parts.push_back(table.edges());
+                          table.clear();
+                        };
                         EdgeCollector collector(index, flow, power, table);
-                        for (size_t leaf = begin; leaf < end; ++leaf)
+                        for (size_t leaf = begin; leaf < end; ++leaf) {
                           collector.collect(uint32_t(leaf));
-                        const std::lock_guard<std::mutex> lock(edgesMutex);
-                        edges.insert(edges.end(), table.edges().begin(), table.edges().end());
+                          if (table.edges().size() > kEdgesPerTable) empty();
+                        }
+                        empty();
                       });
+  std::vector<Edge> edges = detail::concatenated(std::move(parts));
   detail::reduceEdges(edges);
   return {flow.criticalPoints, std::move(edges)};
 }

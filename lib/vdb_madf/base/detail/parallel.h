@@ -59,6 +59,20 @@ void parallelForEach(size_t count, size_t grain, Interrupter* interrupter, const
   });
 }
 
+/// All items, in their order. Each chunk is given back once it was copied.
+template <typename Item>
+std::vector<Item> concatenated(std::vector<std::vector<Item>> chunks) {
+  size_t count = 0;
+  for (const std::vector<Item>& chunk : chunks) count += chunk.size();
+  std::vector<Item> all;
+  all.reserve(count);
+  for (std::vector<Item>& chunk : chunks) {
+    all.insert(all.end(), chunk.begin(), chunk.end());
+    chunk = {};
+  }
+  return all;
+}
+
 /// What f(i, some) adds to `some` for each i of [0, count), in the order of i; items are found in
 /// parallel. For the interrupter see parallelFor().
 template <typename Item, typename F>
@@ -69,15 +83,7 @@ std::vector<Item> parallelCollect(size_t count, size_t grain, Interrupter* inter
     const size_t end = std::min(count, (chunk + 1) * grain);
     for (size_t i = chunk * grain; i < end; ++i) f(i, chunks[chunk]);
   });
-  size_t found = 0;
-  for (const std::vector<Item>& chunk : chunks) found += chunk.size();
-  std::vector<Item> all;
-  all.reserve(found);
-  for (std::vector<Item>& chunk : chunks) {
-    all.insert(all.end(), chunk.begin(), chunk.end());
-    chunk = {};
-  }
-  return all;
+  return concatenated(std::move(chunks));
 }
 
 }  // namespace vdb_madf::detail
