@@ -88,7 +88,7 @@ TEST_CASE("slab builder: counts voxels of thin structures apart", "[slabs]") {
     MaskTree layer;
     for (auto p = box.begin(); p; ++p) layer.setValueOn(*p);
     std::vector<LeafIndex::LeafVoxels> leaves;
-    return addLeaves(layer, SlabCosts({}), leaves);
+    return addLeaves(layer, SlabCosts({}), leaves).ofSlab;
   };
   CHECK(bytes({Coord(0), Coord(7)}) == SlabCosts({}).of(1, 512, 0));
   // 6 and 24 of 216 that are not at faces of the leaf.

@@ -168,9 +168,12 @@ void runSegment(const SegmentArguments& o, const Common& common) {
     options.maxMemory = availableMemory();
   else
     options.maxMemory = std::max<int64_t>(1, options.maxMemory - int64_t(object->memUsage()));
+  const auto sampled = [&] {
+    return withFileName(o.input.path, [&] { return sampledSize(*object, options); });
+  };
   if (o.dryRun) {
     common.progress->end();
-    const ObjectSize size = objectSize(*object);
+    const ObjectSize size = sampled();
     const auto mask = int64_t(object->memUsage());
     return say(o, common,
                {size.voxels, size.leaves, mask + neededMemory(o, size, options),
@@ -178,15 +181,19 @@ void runSegment(const SegmentArguments& o, const Common& common) {
                jsonFile);
   }
 
-  const ObjectSize size = options.maxMemory == 0 ? ObjectSize{} : objectSize(*object);
-  const int64_t needed = neededMemory(o, size, options);
-  const bool fits = options.maxMemory == 0 || needed <= options.maxMemory;
+  ObjectSize size = sizeAtMost(*object, options);
+  bool fits = options.maxMemory == 0 || neededMemory(o, size, options) <= options.maxMemory;
+  if (!fits) {
+    size = sampled();
+    fits = neededMemory(o, size, options) <= options.maxMemory;
+  }
   if (!fits && tables && segmentMemory(size, options) <= options.maxMemory)
     throw InvalidInput(
         fmt::format("{}: to segment and measure it needs about {} of memory, and {} may be used: "
                     "allow more, or "
                     "leave --tables out and measure the labels",
-                    o.input.path, readableBytes(needed), readableBytes(options.maxMemory)));
+                    o.input.path, readableBytes(neededMemory(o, size, options)),
+                    readableBytes(options.maxMemory)));
   if (!fits && o.autoSlabs) {
     object.reset();
     return runAutoSlabs(o, common);

@@ -209,7 +209,7 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
       {}, common.progress);
   builder.finish(storedDomain(*about));
   boundaryOf(o.boundary, o.input, *about, common.progress);
-  estimate.memory = kSlabOtherBytes + builder.largestSlabBytes();
+  estimate.memory = kSlabOtherBytes + builder.bytes();
   estimate.slabs = int64_t(builder.slabCount());
   estimate.scratch = estimate.voxels * (o.segment.gamma > 0 ? kFilteredScratch : kScratch);
   estimate.secondsRead = secondsSince(start);

@@ -301,7 +301,7 @@ int64_t memoryOfSegment(const GridPtr& object, int64_t gamma,
   const SegmentOptions options =
       segmentOptions(mask, gamma, "auto", {}, std::nullopt, kTidy, keep, 0);
   const py::gil_scoped_release release;
-  return segmentMemory(objectSize(mask), options) + int64_t(mask.memUsage());
+  return segmentMemory(sampledSize(mask, options), options) + int64_t(mask.memUsage());
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ class Segmenter {
     Flow flowMap = followFlow(map, balls);
     linkManifolds(flowMap, map);
     map = {};
+    flowMap.criticalPoints = {};  // the graph has them
     stages_.begin("merge");
     if (options_.autoStrictness) {
       result_.stable = stableStrictness(mergeHierarchy(result_.graph));
@@ -92,9 +93,12 @@ class Segmenter {
  private:
   /// What the method runs on is the body: the object with its cavities filled.
   void fillCavities() {
-    ObjectSize size;
-    if (options_.maxMemory > 0) size = objectSize(object_);
-    checkMemory(size, options_);
+    if (options_.maxMemory > 0) {
+      size_ = sizeAtMost(object_, options_);
+      if (segmentMemory(size_, options_) > options_.maxMemory)
+        size_ = sampledSize(object_, options_);
+    }
+    checkMemory(size_, options_);
     stages_.begin("leaf_index");
     index_ = LeafIndex(object_);
     resolveBoundary(index_, options_.boundary, result_.domain);  // is all of it inside?
@@ -108,9 +112,9 @@ class Segmenter {
       if (cavities.count > 0) index_ = LeafIndex(index_, cavities.leaves);
       cavities_ = cavityVoxels(index_, cavities);
     }
-    size.leaves = int64_t(index_.leafCount());
-    size.voxels = index_.voxelCount();
-    checkMemory(size, options_);
+    size_.leaves = int64_t(index_.leafCount());
+    size_.voxels = index_.voxelCount();
+    checkMemory(size_, options_);
     detail::chooseWeights(object_, options_, obstacles_, index_.boundingBox(), result_);
   }
 
@@ -143,9 +147,20 @@ class Segmenter {
   Flow followFlow(PowerMap& map, const VoxelSet& balls) {
     Flow found = flow(index_, std::move(map.site), map.power, balls, stages_.begin("flow"));
     counts_.criticalPoints = int64_t(found.criticalPoints.size());
+    checkPoints();
     for (const VoxelId id : cavities_)
       found.criticalPoints[(found.manifold[index_.rank(id)] & ~Flow::kOwnCell) - 1].leaveToCavity();
     return found;
+  }
+
+  /// A sample may have missed where critical points are many.
+  void checkPoints() {
+    const double more = double(counts_.criticalPoints) / double(std::max<int64_t>(1, size_.points));
+    if (options_.maxMemory == 0 || more <= 1) return;
+    for (const auto total : {&ObjectSize::points, &ObjectSize::edges, &ObjectSize::grains,
+                             &ObjectSize::parts, &ObjectSize::bonds})
+      size_.*total = int64_t(more * double(std::max<int64_t>(1, size_.*total)));
+    checkMemory(size_, options_);
   }
 
   void linkManifolds(const Flow& flowMap, const PowerMap& map) {
@@ -197,6 +212,7 @@ class Segmenter {
   SegmentCounts& counts_ = result_.counts;
   const Obstacles obstacles_;
   detail::Stages stages_;
+  ObjectSize size_;                // as far as it is known, if memory is limited
   LeafIndex index_;                // of the body
   std::vector<VoxelId> cavities_;  // its voxels that are none of the object, ascending
 };

@@ -40,7 +40,7 @@ struct SlabDealer::Layers {
 
 void SlabDealer::add(const MaskTree& layer) {
   Leaves leaves;
-  const int64_t bytes = addLeaves(layer, costs_, leaves);
+  const int64_t bytes = addLeaves(layer, costs_, leaves).ofSlab;
   if (leaves.empty()) return;
   const int z = leaves[0].origin.z();
   for (const LeafIndex::LeafVoxels& leaf : leaves)

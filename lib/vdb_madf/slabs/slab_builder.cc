@@ -19,29 +19,31 @@ constexpr char kCuts[] = "cuts";
 
 }  // namespace
 
-SlabCosts::SlabCosts(const SegmentOptions& options) : leaf(2400), voxel(4), thin(660) {
+SlabCosts::SlabCosts(const SegmentOptions& options) : leaf(2400), voxel(4) {
   if (options.gamma > 1) voxel += 2;
   if (options.keepManifold) leaf += 2700;
 }
 
-int64_t addLeaves(const MaskTree& layer, const SlabCosts& costs,
-                  std::vector<LeafIndex::LeafVoxels>& leaves) {
-  int64_t bytes = 0;
+LeafCosts addLeaves(const MaskTree& layer, const SlabCosts& costs,
+                    std::vector<LeafIndex::LeafVoxels>& leaves) {
+  LeafCosts added;
   for (auto leaf = layer.cbeginLeaf(); leaf; ++leaf) {
     if (leaf->isEmpty()) continue;
     leaves.push_back({leaf->origin(), detail::maskOf(*leaf)});
     const LeafIndex::Mask& mask = leaves.back().mask;
-    bytes += costs.of(1, detail::countVoxels(mask), detail::countThin(mask));
+    const int64_t thin = detail::countThin(mask);
+    added.ofSlab += costs.of(1, detail::countVoxels(mask), thin);
+    if (thin > 0) added.ofWhole += costs.speck * detail::countSpecks(mask);
   }
   detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
   });
-  return bytes;
+  return added;
 }
 
 void SlabBuilder::add(const MaskTree& layer) {
   const size_t before = leaves_.size();
-  const int64_t bytes = addLeaves(layer, costs_, leaves_);
+  const LeafCosts added = addLeaves(layer, costs_, leaves_);
   if (leaves_.size() == before) return;
   const int z = leaves_[before].origin.z();
   for (size_t i = before; i < leaves_.size(); ++i)
@@ -52,7 +54,7 @@ void SlabBuilder::add(const MaskTree& layer) {
   if (cuts_.empty()) cuts_.push_back(z);
   const int height = z - cuts_.back();
   const bool isHigh = limits_.height > 0 && height + 8 > (limits_.height + 7) / 8 * 8;
-  const bool isFull = limits_.bytes > 0 && bytes_ + bytes > limits_.bytes;
+  const bool isFull = limits_.bytes > 0 && bytes_ + wholeBytes_ + added.ofSlab > limits_.bytes;
   if (height >= std::max(limits_.leastHeight, 8) && (isHigh || isFull)) {
     std::vector<LeafIndex::LeafVoxels> next(leaves_.begin() + std::ptrdiff_t(before),
                                             leaves_.end());
@@ -60,7 +62,8 @@ void SlabBuilder::add(const MaskTree& layer) {
     endSlab(z);
     leaves_ = std::move(next);
   }
-  bytes_ += bytes;
+  bytes_ += added.ofSlab;
+  wholeBytes_ += added.ofWhole;
 }
 
 void SlabBuilder::endSlab(int z) {

@@ -18,27 +18,34 @@ struct SlabLimits {
   int leastHeight = 8;  ///< of a slab, but for the last
 };
 
-/// The memory that segmentSlabs() takes at its peak for a slab, about, in bytes, as `tests/memory`
-/// finds. For limits; what is kept of the whole is not counted (README.md).
+/// The memory that segmentSlabs() takes at its peak, about, in bytes, as `tests/memory` finds. For
+/// limits.
 struct SlabCosts {
-  int64_t leaf;   ///< of each leaf node: mostly that of the grid of labels
-  int64_t voxel;  ///< of each voxel: maps, and what of them goes to scratch
-  /// Each voxel that may become a critical point, about (detail/leaf_mask.h), adds this: the graph,
-  /// or what the filter leaves without a ball.
-  int64_t thin;
+  int64_t leaf;   ///< of each leaf node of a slab: mostly that of the grid of labels
+  int64_t voxel;  ///< of each of its voxels: maps, and what of them goes to scratch
+  /// Each of its voxels that may become a critical point, about (detail/leaf_mask.h), adds this:
+  /// the graph, or what the filter leaves without a ball.
+  int64_t thin = 520;
+  int64_t speck = 220;  ///< of each grain of the whole that is in one piece within a leaf node
 
   explicit SlabCosts(const SegmentOptions& options);
   int64_t of(int64_t leaves, int64_t voxels, int64_t thinVoxels) const {
     return leaf * leaves + voxel * voxels + thin * thinVoxels;
   }
 };
-/// Apart from that; most of it is the program itself.
-constexpr int64_t kSlabOtherBytes = int64_t(128) << 20;
+/// Apart from that: the program itself.
+constexpr int64_t kSlabOtherBytes = int64_t(84) << 20;
+
+/// What some leaf nodes cost.
+struct LeafCosts {
+  int64_t ofSlab = 0;   ///< while their slab is worked on
+  int64_t ofWhole = 0;  ///< all the time
+};
 
 /// Adds the leaves of a layer that hold object voxels; returns what they cost.
 /// @throw InvalidInput if the layer has active tiles
-int64_t addLeaves(const MaskTree& layer, const SlabCosts& costs,
-                  std::vector<LeafIndex::LeafVoxels>& leaves);
+LeafCosts addLeaves(const MaskTree& layer, const SlabCosts& costs,
+                    std::vector<LeafIndex::LeafVoxels>& leaves);
 
 /// Cuts an object that comes in layers of leaf nodes into slabs, and keeps these in scratch.
 class SlabBuilder {
@@ -51,8 +58,9 @@ class SlabBuilder {
   /// Comes after the last layer. The slabs cover the domain, if there is one, and the object.
   void finish(const std::optional<Domain>& domain);
 
-  size_t slabCount() const { return cuts_.size() - 1; }           ///< once it is finished
-  int64_t largestSlabBytes() const { return largestSlabBytes_; }  ///< of any slab
+  size_t slabCount() const { return cuts_.size() - 1; }  ///< once it is finished
+  /// What the largest slab and the whole take.
+  int64_t bytes() const { return largestSlabBytes_ + wholeBytes_; }
 
  private:
   void endSlab(int z);
@@ -64,6 +72,7 @@ class SlabBuilder {
   std::vector<LeafIndex::LeafVoxels> leaves_;  // of the slab that is not ended
   int64_t bytes_ = 0;                          // of the same
   int64_t largestSlabBytes_ = 0;
+  int64_t wholeBytes_ = 0;
   std::optional<int> lastLayer_;
 };
 

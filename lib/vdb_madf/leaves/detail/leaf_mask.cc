@@ -16,6 +16,9 @@ uint64_t dilateWord(uint64_t w) {
 
 using Mask = LeafIndex::Mask;
 
+constexpr uint64_t kInner = ~(kFirstY | kLastY | kFirstZ | kLastZ);
+constexpr Mask kNotAtFaces{0, kInner, kInner, kInner, kInner, kInner, kInner, 0};
+
 Mask alongZ(Mask mask) {
   for (uint64_t& w : mask) w |= (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1;
   return mask;
@@ -76,8 +79,6 @@ LeafIndex::Mask erode(const LeafIndex::Mask& mask, uint64_t beyond) {
 }
 
 int64_t countThin(const LeafIndex::Mask& mask) {
-  constexpr uint64_t kInner = ~(kFirstY | kLastY | kFirstZ | kLastZ);
-  constexpr LeafIndex::Mask kNotAtFaces{0, kInner, kInner, kInner, kInner, kInner, kInner, 0};
   const Mask outside = without(kFullMask, mask);
   const auto told = [&](const Mask& voxels) {
     return int64_t(countVoxels(both(without(mask, voxels), kNotAtFaces)));
@@ -88,6 +89,12 @@ int64_t countThin(const LeafIndex::Mask& mask) {
   const Mask deep = without(kFullMask, with18), deepest = erode(mask, ~uint64_t(0));
   const int64_t holed = told(either(dilate(deep), alongX(alongY(alongZ(deepest)))));
   return std::max(thin, holed * 55 / 100) * 512 / 216;
+}
+
+int64_t countSpecks(const LeafIndex::Mask& mask) {
+  int64_t inside = 0;
+  forEachPiece(mask, [&](const Mask& piece) { inside += both(piece, kNotAtFaces) == piece; });
+  return inside * 512 / 216;
 }
 
 LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side) {

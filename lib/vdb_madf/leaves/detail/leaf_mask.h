@@ -93,6 +93,10 @@ LeafIndex::Mask erode(const LeafIndex::Mask& mask, uint64_t beyond);
 /// faces of the leaf, for all in proportion.
 int64_t countThin(const LeafIndex::Mask& mask);
 
+/// About how many 6-connected pieces of the object have a place in the leaf as a whole, so that
+/// they are grains by themselves: those that are not at its faces, in proportion.
+int64_t countSpecks(const LeafIndex::Mask& mask);
+
 /// The voxels of the leaf at `origin` that lie in a box.
 LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box);
 
