@@ -174,13 +174,15 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV
     file size_mm,percent_passing (or size_um, size_voxel): in the sample `size_curve_rms_percent`,
     how far each kind of curve is from it between 5 and 95 %.
-    phases: a map of phases of the same shape, a file or an array: `bridges`, the binder (the voxels
-    of value `binder`, else 1) between grains. phases_grid: as intensity_grid.
+    phases: a map of phases of the same shape, or the whole of which the labels were cropped, a file
+    or an array: `bridges`, the binder (the voxels of value `binder`, else 1) between grains.
+    phases_grid: as intensity_grid.
     stability: of a Segmentation that kept its manifolds: columns `born`, `dies`, `stability` of the
     grains and `vanishes` of the bonds.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
     and the ends `low` and `high` of its 95 % interval.
-    sensitivity: runs, 5 to 1000, in which the scan of `gray` is segmented by other choices: columns
+    sensitivity: runs, 5 to 1000, in which the scan of `gray`, the whole one, is segmented by other
+    choices: columns
     `p_grain` and `p_bond` (share of the runs in which a grain or bond comes again), `volume_sd` and
     `area_sd`, and in the sample `sensitivity`: what was varied and `intervals` as of bootstrap.
     vary: how far, such as {"threshold": 800, "smooth": 0.3, "strictness": 1, "gamma": 8}; what is
