@@ -4,7 +4,6 @@
 #include "vdb_madf/segmentation/segment_memory.h"
 
 #include <openvdb/tree/LeafManager.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/detail/thread_count.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/merge.h"
 
@@ -36,16 +36,14 @@ constexpr double kPerVoxel = 4, kCompletion = 0.6;
 // Bytes of each item of a size, measured where it is many.
 constexpr double kCavity = 180, kBallTable = 20, kBallList = 24, kFilter = 25, kKeptBall = 150,
                  kFlow = 64, kPoint = 40, kEdge = 32, kStoredPoint = 32, kStoredEdge = 44,
-                 kClass = 20, kCluster = 130, kContact = 60, kPart = 280, kGrainRow = 1900,
+                 kClass = 20, kCluster = 130, kContact = 60, kPart = 280, kGrainRow = 1700,
                  kBondRow = 700;
 
 // The program itself, what each thread has of its own, and what the allocator keeps.
-constexpr double kProgram = 56 << 20, kThread = 2 << 20, kAllocator = 1.06;
+constexpr double kProgram = 56 << 20, kThread = 2 << 20, kAllocator = 1.08;
 
 int64_t withOther(double bytes) {
-  using Control = tbb::global_control;
-  const auto threads = double(Control::active_value(Control::max_allowed_parallelism));
-  return int64_t(kProgram + kThread * threads + kAllocator * bytes);
+  return int64_t(kProgram + kThread * double(detail::threadCount()) + kAllocator * bytes);
 }
 
 /// The totals that a sample has to tell.

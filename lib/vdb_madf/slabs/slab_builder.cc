@@ -19,7 +19,8 @@ constexpr char kCuts[] = "cuts";
 
 }  // namespace
 
-SlabCosts::SlabCosts(const SegmentOptions& options) : leaf(2400), voxel(4) {
+SlabCosts::SlabCosts(const SegmentOptions& options)
+    : leaf(2400), voxel(4), speck(options.merge.mode == MergeMode::score ? 200 : 90) {
   if (options.gamma > 1) voxel += 2;
   if (options.keepManifold) leaf += 2700;
 }
@@ -54,7 +55,9 @@ void SlabBuilder::add(const MaskTree& layer) {
   if (cuts_.empty()) cuts_.push_back(z);
   const int height = z - cuts_.back();
   const bool isHigh = limits_.height > 0 && height + 8 > (limits_.height + 7) / 8 * 8;
-  const bool isFull = limits_.bytes > 0 && bytes_ + wholeBytes_ + added.ofSlab > limits_.bytes;
+  // What the whole will take is not known yet, but for what has been seen of it.
+  const int64_t whole = std::max(wholeBytes_, std::min(16 * wholeBytes_, limits_.bytes / 4));
+  const bool isFull = limits_.bytes > 0 && bytes_ + whole + added.ofSlab > limits_.bytes;
   if (height >= std::max(limits_.leastHeight, 8) && (isHigh || isFull)) {
     std::vector<LeafIndex::LeafVoxels> next(leaves_.begin() + std::ptrdiff_t(before),
                                             leaves_.end());

@@ -25,8 +25,8 @@ struct SlabCosts {
   int64_t voxel;  ///< of each of its voxels: maps, and what of them goes to scratch
   /// Each of its voxels that may become a critical point, about (detail/leaf_mask.h), adds this:
   /// the graph, or what the filter leaves without a ball.
-  int64_t thin = 520;
-  int64_t speck = 220;  ///< of each grain of the whole that is in one piece within a leaf node
+  int64_t thin = 560;
+  int64_t speck;  ///< of each grain of the whole that is in one piece within a leaf node
 
   explicit SlabCosts(const SegmentOptions& options);
   int64_t of(int64_t leaves, int64_t voxels, int64_t thinVoxels) const {

@@ -4,15 +4,21 @@
 #include "vdb_madf/base/detail/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <exception>
 #include <mutex>
 
+#include "vdb_madf/base/detail/thread_count.h"
 #include "vdb_madf/base/errors.h"
 
 namespace vdb_madf::detail {
+
+size_t threadCount() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
 
 void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
                  const std::function<void(size_t, size_t)>& body) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/thread_count.h"
 #include "vdb_madf/base/errors.h"
 
 namespace vdb_madf::detail {
@@ -89,6 +90,10 @@ class PlainLoop {
 };
 
 }  // namespace
+
+size_t threadCount() {
+  return kThreads;
+}
 
 void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
                  const std::function<void(size_t, size_t)>& body) {
