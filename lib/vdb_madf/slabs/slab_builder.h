@@ -34,7 +34,7 @@ struct SlabCosts {
   }
 };
 /// Apart from that: the program itself.
-constexpr int64_t kSlabOtherBytes = int64_t(84) << 20;
+constexpr int64_t kSlabOtherBytes = int64_t(92) << 20;
 
 /// What some leaf nodes cost.
 struct LeafCosts {
