@@ -183,7 +183,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
 
   ObjectSize size = sizeAtMost(*object, options);
   bool fits = options.maxMemory == 0 || neededMemory(o, size, options) <= options.maxMemory;
-  if (!fits) {
+  if (!fits && (tables || o.autoSlabs)) {  // else segment() finds out
     size = sampled();
     fits = neededMemory(o, size, options) <= options.maxMemory;
   }

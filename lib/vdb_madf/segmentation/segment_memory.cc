@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kBlockSide = 64;  // of a sampled block, voxels
 constexpr int kBlocks = 8;
-constexpr int64_t kLeavesOfBlock = 512;
+constexpr int64_t kLeavesOfBlock = kBlockSide * kBlockSide * kBlockSide / 512;
 
 // Bytes per leaf node.
 constexpr double kIndex = 460;  // index, masks, neighbors, sets of voxels
@@ -191,7 +191,6 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   if (options.keepPower) kept += grid;
   if (options.keepManifold) kept += grid;
   kept += kPoint * points + kEdge * edges;
-  peak = std::max(peak, kept + kPerVoxel * voxels);
   maps = kPerVoxel * voxels;
   const double joining =
       options.merge.mode == MergeMode::score ? kCluster * grains + kContact * edges : 0;
