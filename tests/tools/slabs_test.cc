@@ -198,6 +198,10 @@ TEST_CASE("slabs: what is finished is not done again to resume it", "[slabs]") {
     CHECK(refused.exitCode == 1);
     CHECK_THAT(refused.err, Contains("is finished, and was made of another input or with other"));
   }
+  // What was asked for before counts, too.
+  bench.mustRun("segment in.vdb closed.slabs --grid object --boundary closed --fill-holes 3 -q");
+  for (const std::string less : {"--boundary closed", "--fill-holes 3"})
+    CHECK(bench.run("segment in.vdb closed.slabs --grid object --resume " + less).exitCode == 1);
   std::filesystem::last_write_time(bench.path("in.vdb"),
                                    std::filesystem::file_time_type::clock::now());
   CHECK_THAT(bench.run(segment + "--resume").err, Contains("made of another input"));
@@ -233,6 +237,21 @@ TEST_CASE("slabs: a folder or a mask that changed since is another input", "[sla
     std::filesystem::last_write_time(bench.path(name), before);
     CHECK(bench.run(segment).exitCode == 0);
   }
+  // The region, which each slab has, is counted once.
+  const Json grids = Json::parse(bench.mustRun("info out.slabs --json -")).at("grids");
+  REQUIRE(grids[1].at("name") == "region");
+  CHECK(grids[1].at("active_voxels") == grids[0].at("region_voxels"));
+  // So are samples whose name a header alone tells.
+  bench.mustRun("convert roi.tif named.mhd -q");
+  std::string header = bench.bytes("named.mhd");
+  header.replace(header.find("named.raw"), 9, "other.raw");
+  bench.write("named.mhd", header);
+  std::filesystem::rename(bench.path("named.raw"), bench.path("other.raw"));
+  const std::string ofHeader = "segment named.mhd named.slabs --slab-height 8 --resume";
+  bench.mustRun(ofHeader + " -q");
+  std::filesystem::last_write_time(bench.path("other.raw"),
+                                   std::filesystem::file_time_type::clock::now());
+  CHECK_THAT(bench.run(ofHeader).err, Contains("made of another input"));
 }
 
 TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {

@@ -130,7 +130,7 @@ Json describeSlabs(const SlabFolder& folder, const VdbReadOptions& reading, Prog
       removeGraph(*slab[i]);  // it has a part alone
       if (s == 0)
         grids.push_back(describeGrid(*slab[i]));
-      else
+      else if (slab[i]->isType<Int32Grid>())  // each slab has the whole region
         addSlab(describeGrid(*slab[i]), grids[i]);
     }
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -64,8 +65,23 @@ struct Stamp {
   }
 };
 
-/// Of a file, with the data that lie beside a header, or of all that lies in a folder.
-Stamp stampOf(const std::string& path) {
+/// The files that a volume is read from: those that a header names, too. The path alone, if it
+/// cannot be opened.
+std::vector<std::string> sourcesOf(const std::string& path, VolumeOptions options) {
+  options.note = nullptr;
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || hasVdbEnding(path)) return {path};
+  try {
+    return openVolumeImage(path, options)->files();
+  } catch (const IoError&) {
+    return {path};
+  } catch (const InvalidInput&) {
+    return {path};
+  }
+}
+
+/// Of these files and of all that lies in those that are folders.
+Stamp stampOf(const std::vector<std::string>& sources) {
   Stamp stamp;
   const auto add = [&](const fs::path& file) {
     std::error_code error;
@@ -73,22 +89,30 @@ Stamp stampOf(const std::string& path) {
     if (const auto time = fs::last_write_time(file, error); !error)
       stamp.changed = std::max(stamp.changed, time);
   };
-  std::error_code error;
-  if (!fs::is_directory(path, error)) add(path);
-  const std::string ending = fileEnding(path);
-  if (ending == ".mhd" || ending == ".nhdr")
-    for (const char* data : {".raw", ".zraw", ".raw.gz"})
-      add(fs::path(path).replace_extension(data));
-  fs::recursive_directory_iterator entry(path, error);
-  for (; entry != fs::recursive_directory_iterator(); entry.increment(error))
-    if (entry->is_regular_file(error)) add(entry->path());
+  for (const std::string& path : std::set(sources.begin(), sources.end())) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) add(path);
+    fs::recursive_directory_iterator entry(path, error);
+    for (; entry != fs::recursive_directory_iterator(); entry.increment(error))
+      if (entry->is_regular_file(error)) add(entry->path());
+  }
   return stamp;
+}
+
+Stamp stampOf(const InputOptions& in) {
+  return stampOf(sourcesOf(in.path, in.volume(nullptr)));
+}
+
+Stamp stampOf(const RegionOptions& region) {
+  return stampOf(sourcesOf(region.mask, {}));
 }
 
 Json originOf(const SegmentArguments& o, const Stamp& input) {
   Json origin{{"input", lastPart(o.input.path)}, {"input_bytes", input.bytes}};
   for (const auto& [name, text] : readingOptions(o.input))
     if (!text.empty()) origin["reading"][name] = text;
+  if (o.boundary != "auto") origin["reading"]["boundary"] = o.boundary;
+  if (!o.fillHoles.empty()) origin["reading"]["fill_holes"] = o.fillHoles;
   return origin;
 }
 
@@ -110,8 +134,8 @@ std::string workOf(const SegmentArguments& o) {
   const std::string& in = o.input.path;
   std::error_code ignored;
   return fmt::format("{}\n{} {} {}\n{}", fs::absolute(o.out, ignored).string(),
-                     fs::absolute(in, ignored).string(), stampOf(in).text(),
-                     stampOf(o.input.region.mask).text(), choicesOf(o));
+                     fs::absolute(in, ignored).string(), stampOf(o.input).text(),
+                     stampOf(o.input.region).text(), choicesOf(o));
 }
 
 /// True if an index says of the labels what they would be of these arguments.
@@ -121,8 +145,6 @@ bool isOf(const Json& index, const SegmentArguments& o, const Stamp& input) {
   wanted["gamma"] = o.segment.gamma;
   wanted["tidy"] = o.segment.tidy;
   addMerging(wanted, o.segment.merge);
-  if (o.boundary != "auto") wanted["boundary"] = o.boundary;
-  if (o.segment.fillHoles) wanted["fill_holes"] = *o.segment.fillHoles;
   for (const auto& [key, value] : wanted.items())
     if (!index.contains(key) || index.at(key) != value) return false;
   for (const auto& [key, text] : choiceOptions(o))
@@ -148,13 +170,13 @@ bool isOfRun(std::string name) {
 }  // namespace
 
 Json originOf(const SegmentArguments& o) {
-  return originOf(o, stampOf(o.input.path));
+  return originOf(o, stampOf(o.input));
 }
 
 void checkAlike(const SegmentArguments& o, Team& team) {
   if (team.count() == 1) return;
-  const std::string own = fmt::format("{}\n{}\n{}", choicesOf(o), stampOf(o.input.path).bytes,
-                                      stampOf(o.input.region.mask).bytes);
+  const std::string own = fmt::format("{}\n{}\n{}", choicesOf(o), stampOf(o.input).bytes,
+                                      stampOf(o.input.region).bytes);
   Bytes first(own.begin(), own.end());
   team.broadcast(first);
   inAllMembers(team, [&] {
@@ -174,8 +196,8 @@ bool isFinished(const SegmentArguments& o) {
   const std::string path = (fs::path(o.out) / kSlabIndex).string();
   std::ifstream file(path);
   const Json index = Json::parse(file, nullptr, false);
-  const Stamp input = stampOf(o.input.path);
-  const auto read = std::max(input.changed, stampOf(o.input.region.mask).changed);
+  const Stamp input = stampOf(o.input);
+  const auto read = std::max(input.changed, stampOf(o.input.region).changed);
   if (!isOf(index, o, input) || read > fs::last_write_time(path, ignored))
     throw InvalidInput(o.out +
                        ": is finished, and was made of another input or with other options: leave "
