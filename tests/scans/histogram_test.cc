@@ -95,6 +95,18 @@ TEST_CASE("histogram: counts every value in the narrowest bins that suffice", "[
   checkBins<double>({-1e308, 1e308, 0});
 }
 
+TEST_CASE("histogram: the voxels of few values are counted, however wide the bins are",
+          "[histogram]") {
+  const Histogram wide = histogramOfRow<uint32_t>({0, 4294967295u, 5, 4294967295u});
+  CHECK(wide.few == std::vector<double>{0, 5, 4294967295.0});
+  CHECK(wide.fewCounts == std::vector<int64_t>{1, 1, 2});
+  CHECK(voxelsAround(wide, 5) == 2);  // 0 and 5 have one bin
+  const Histogram fraction = histogramOfRow<float>({0, 1.1F, 0, 0, 1.1F});
+  CHECK(fraction.fewCounts == std::vector<int64_t>{3, 2});
+  CHECK(voxelsAround(fraction, double(1.1F)) == 2);
+  CHECK(voxelsAround(fraction, 7) == 0);
+}
+
 TEST_CASE("histogram: has no bins without a finite value", "[histogram]") {
   const Histogram histogram = histogramOfRow<float>({std::nanf(""), std::nanf("")});
   CHECK(histogram.counts.empty());
@@ -195,6 +207,13 @@ TEST_CASE("histogram: a valley lies between two modes, or there is none", "[hist
   for (int i = -20; i <= 20; ++i)
     one.insert(one.end(), size_t(100 - 4 * std::abs(i)), uint8_t(60 + i));
   CHECK_FALSE(valleyThreshold(histogramOfRow(one)));
+  // Nor is a range too large that is no finite number itself.
+  std::vector<double> huge;
+  for (const uint8_t value : two) huge.push_back((value - 100) * 1.7e306);
+  const auto hugeValley = valleyThreshold(histogramOfRow(huge));
+  REQUIRE(hugeValley);
+  CHECK(*hugeValley > -20 * 1.7e306);
+  CHECK(*hugeValley < 21 * 1.7e306);
 }
 
 TEST_CASE("histogram: a line shows it between its ends", "[histogram]") {

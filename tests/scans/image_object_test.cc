@@ -178,6 +178,15 @@ TEST_CASE("image_object: a round field of view does not pass for pores", "[image
   samples[40 * 40 * 5 + 39] = 0;
   for (uint16_t& sample : samples) sample = uint16_t(std::max<int>(sample, 3000));
   CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));
+  // Pores that are as even are no padding, whatever their value is.
+  std::vector<float> pores;
+  for (size_t i = 0; i < samples.size(); ++i)
+    pores.push_back(i % 4 > 0 ? 0.1F : 1 + float(samples[i]) / 1e4F);
+  for (size_t z = 0; z < 9; ++z)
+    for (const size_t corner : {0, 39, 39 * 40, 39 * 40 + 39}) pores[z * 1600 + corner] = 0.1F;
+  CHECK_FALSE(
+      imageObject([&] { return imageOf(size, pores); }, Selection::threshold(0.6), {}, std::nullopt)
+          .corner);
   // A mask has zeros at its corners, too.
   for (uint16_t& sample : samples) sample = sample > 3700;
   CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));

@@ -56,10 +56,7 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
     json["histogram_counts"] = gathered(histogram, histogram.min, histogram.max, kBins);
   if (kind == ImageKind::mask || kind == ImageKind::phases)
     for (size_t i = 0; i < histogram.few.size(); ++i)
-      json["voxels_of_value"].push_back(
-          {number(histogram.few[i]),
-           voxelsFrom(histogram, histogram.few[i]) -
-               (i + 1 < histogram.few.size() ? voxelsFrom(histogram, histogram.few[i + 1]) : 0)});
+      json["voxels_of_value"].push_back({number(histogram.few[i]), histogram.fewCounts[i]});
   if (kind == ImageKind::labels)
     json["labels"] =
         countLabels(histogram, *openVolumeImage(input.path, input.volume(progress)), progress);

@@ -191,8 +191,8 @@ std::optional<double> valleyThreshold(const Histogram& histogram) {
                                         bins.begin() + std::ptrdiff_t(modes[1]) + 1);
     const auto bin = size_t(least - bins.begin());
     if (direct) return histogram.lowerEdge(bin + 1);
-    return histogram.min +
-           (histogram.max - histogram.min) * (double(bin) + 0.5) / double(kModeBins);
+    const double half = histogram.max / 2 - histogram.min / 2;  // the whole may not be finite
+    return histogram.min + half * ((2 * double(bin) + 1) / double(kModeBins));
   }
   return std::nullopt;
 }
@@ -202,6 +202,11 @@ int64_t voxelsFrom(const Histogram& histogram, double threshold) {
   for (size_t i = histogram.counts.size(); i > 0 && histogram.lowerEdge(i - 1) >= threshold; --i)
     voxels += histogram.counts[i - 1];
   return voxels;
+}
+
+int64_t voxelsAround(const Histogram& histogram, double value) {
+  const double bin = std::floor(value / histogram.width) - double(histogram.first);
+  return bin >= 0 && bin < double(histogram.counts.size()) ? histogram.counts[size_t(bin)] : 0;
 }
 
 double quantile(const Histogram& histogram, double share) {
@@ -218,7 +223,7 @@ std::vector<double> gathered(const Histogram& histogram, double low, double high
   for (size_t i = 0; i < histogram.counts.size(); ++i) {
     const double middle = histogram.lowerEdge(i) + (histogram.whole ? 0 : histogram.width / 2);
     const double value = std::min(std::max(middle, histogram.min), histogram.max);
-    const double place = (value - low) / (high - low) * double(bins);
+    const double place = (value / 2 - low / 2) / (high / 2 - low / 2) * double(bins);
     if (place >= 0 && value <= high && histogram.counts[i] > 0)
       sums[std::min(size_t(place), bins - 1)] += double(histogram.counts[i]);
   }

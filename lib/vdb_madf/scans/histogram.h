@@ -29,7 +29,8 @@ struct Histogram {
   bool whole = true;                  ///< all finite values are whole numbers
   /// All finite values, ascending, if there are at most kFewValues; else the least that were met.
   std::vector<double> few;
-  bool onlyFew = true;  ///< `few` has all values
+  std::vector<int64_t> fewCounts;  ///< how many voxels have each of them
+  bool onlyFew = true;             ///< `few` has all values
   /// The one value at the four corners of all slices, as around a round field of view.
   std::optional<double> corner;
   int64_t padding = 0;  ///< voxels of this value between an end of a row and the first of another
@@ -87,6 +88,9 @@ std::optional<double> valleyThreshold(const Histogram& histogram);
 
 /// Voxels at or above a threshold (one of those above, or any edge of a bin).
 int64_t voxelsFrom(const Histogram& histogram, double threshold);
+
+/// Voxels in the bin that holds this value.
+int64_t voxelsAround(const Histogram& histogram, double value);
 
 /// The value below which a share of the voxels lies, to the edge of a bin.
 double quantile(const Histogram& histogram, double share);

@@ -183,9 +183,9 @@ std::optional<double> cornerOfGray(const Histogram& histogram, std::optional<dou
   if (!corner || kindOf(histogram) != ImageKind::gray) return std::nullopt;
   // A circle leaves 21 % of its square; what most voxels have is the pore of a scan without noise.
   constexpr double kMostAround = 0.4;
-  const int64_t around =
-      voxelsFrom(histogram, *corner) - voxelsFrom(histogram, *corner + histogram.width);
-  return double(around) <= kMostAround * double(histogram.finite) ? corner : std::nullopt;
+  return double(voxelsAround(histogram, *corner)) <= kMostAround * double(histogram.finite)
+             ? corner
+             : std::nullopt;
 }
 
 /// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is

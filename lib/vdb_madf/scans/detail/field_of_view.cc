@@ -84,14 +84,18 @@ std::vector<PlanePoint> rimOf(ImageReader& image, int axis, Interrupter* interru
       }
     });
   });
-  std::vector<PlanePoint> rim;
+  std::vector<Ends> all(lines);
   for (const Rims& rims : partial) {
-    const std::vector<Ends>& all = sameCorners ? rims.notFirst : rims.notZero;
-    for (size_t line = 0; line < all.size(); ++line)
-      if (all[line].last >= 0)
-        for (const int end : {all[line].first, all[line].last})
-          rim.push_back({{double(end), double(line)}});
+    const std::vector<Ends>& some = sameCorners ? rims.notFirst : rims.notZero;
+    for (size_t line = 0; line < some.size(); ++line)
+      if (some[line].last >= 0) all[line].add(some[line].first, some[line].last);
   }
+  // In one order, whatever the threads had: the least circle depends on it in its last bits.
+  std::vector<PlanePoint> rim;
+  for (size_t line = 0; line < lines; ++line)
+    if (all[line].last >= 0)
+      for (const int end : {all[line].first, all[line].last})
+        rim.push_back({{double(end), double(line)}});
   return rim;
 }
 

@@ -85,10 +85,13 @@ void HistogramBuilder::include(double low, double high, bool isIntegral) {
   max_ = newHigh;
 }
 
-void HistogramBuilder::addValue(double value) {
+void HistogramBuilder::addValue(double value, int64_t voxels) {
   if (few_.size() > kFewValues) return;
-  const auto place = std::lower_bound(few_.begin(), few_.end(), value);
-  if (place == few_.end() || *place != value) few_.insert(place, value);
+  const auto place = std::lower_bound(few_.begin(), few_.end(), std::pair(value, int64_t(0)));
+  if (place == few_.end() || place->first != value)
+    few_.emplace(place, value, voxels);
+  else
+    place->second += voxels;
 }
 
 /// True if the row has no other values than these, which are then counted: mostly so in a mask.
@@ -105,11 +108,11 @@ bool HistogramBuilder::addTwoValues(const T* samples, size_t count, T low, T hig
   const size_t ends = changes + size_t(samples[0] == high) + size_t(samples[count - 1] == high);
   const auto highRuns = int64_t(ends / 2);
   this->count(binOf(double(high)), int64_t(highs), highRuns);
-  addValue(double(high));
+  addValue(double(high), int64_t(highs));
   whole_ &= double(high) == std::floor(double(high));
   if (highs == count) return true;
   this->count(binOf(double(low)), int64_t(count - highs), int64_t(changes) + 1 - highRuns);
-  addValue(double(low));
+  addValue(double(low), int64_t(count - highs));
   whole_ &= double(low) == std::floor(double(low));
   return true;
 }
@@ -125,7 +128,7 @@ void HistogramBuilder::addRuns(const T* samples, size_t count) {
     while (end < count && samples[end] == samples[i]) ++end;
     const auto value = double(samples[i]);
     this->count(binOf(value), int64_t(end - i), 1);
-    addValue(value);
+    addValue(value, int64_t(end - i));
     if constexpr (!std::is_integral_v<T>) whole_ &= value == std::floor(value);
     i = end;
   }
@@ -152,7 +155,7 @@ void HistogramBuilder::add(const HistogramBuilder& other) {
   finite_ += other.finite_;
   notFinite_ += other.notFinite_;
   whole_ &= other.whole_;
-  for (const double value : other.few_) addValue(value);
+  for (const auto& [value, voxels] : other.few_) addValue(value, voxels);
   if (!other.any_) return;
   // Integers have whole bins on both sides, so the exponents say what else to include.
   include(other.min_, other.max_, other.exponent_ >= 0);
@@ -171,8 +174,11 @@ Histogram HistogramBuilder::result(SampleType type) const {
   histogram.notFinite = notFinite_;
   histogram.whole = whole_;
   histogram.onlyFew = few_.size() <= kFewValues;
-  histogram.few = few_;
-  if (!histogram.onlyFew) histogram.few.clear();
+  for (const auto& [value, voxels] : few_) {
+    if (!histogram.onlyFew) break;
+    histogram.few.push_back(value);
+    histogram.fewCounts.push_back(voxels);
+  }
   if (!any_) return histogram;
   histogram.width = std::ldexp(1, exponent_);
   histogram.first = binOf(min_);

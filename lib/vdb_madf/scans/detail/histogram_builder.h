@@ -36,7 +36,7 @@ class HistogramBuilder {
   void include(double low, double high, bool isIntegral);
   void widen(int exponent);
   void setExponent(int exponent);
-  void addValue(double value);
+  void addValue(double value, int64_t voxels);
   int64_t binOf(double value) const;
   void count(int64_t bin, int64_t voxels, int64_t runs) {
     counts_[size_t(bin & (kBins - 1))] += voxels;
@@ -51,7 +51,8 @@ class HistogramBuilder {
   double min_ = 0, max_ = 0;
   int64_t finite_ = 0, notFinite_ = 0;
   bool whole_ = true;
-  std::vector<double> few_;  // ascending; one more than kFewValues if there are more
+  // Ascending, with their voxels; one more than kFewValues if there are more.
+  std::vector<std::pair<double, int64_t>> few_;
 };
 
 /// The parts of a row of an image that count, [begin, end) along x.
