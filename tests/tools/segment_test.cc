@@ -197,6 +197,7 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   const Json made = Json::parse(bench.mustRun(inSlabs + "--json -"));
   for (const char* same : {"object_voxels", "leaves", "slab_count"})
     CHECK(slabs.at(same) == made.at(same));
+  bench.mustRun(inSlabs + "-q --max-memory " + slabs.at("estimated_memory_bytes").dump());
   CHECK(slabs.at("slab_count") == 4);
   CHECK(slabs.at("estimated_scratch_bytes") == 5 * slabs.at("object_voxels").get<int64_t>());
   const Json filtered = Json::parse(bench.mustRun(inSlabs + "--gamma 9 --dry-run --json -"));

@@ -121,7 +121,8 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
                            int code = kFailed) {
     refuses(bench, code, "sweep in.slabs out.csv " + arguments, {why});
   };
-  refused("--gamma 20", "those of gamma 9", kWrongUsage);
+  for (const std::string gamma : {"20", "0"})
+    refused("--gamma " + gamma, "those of gamma 9", kWrongUsage);
   refused("--boundary closed", "--boundary", kWrongUsage);
   refused("--phase 1", "leave --phase out", kWrongUsage);
   refused("--fill-holes 3", "leave --fill-holes out", kWrongUsage);

@@ -30,17 +30,18 @@ namespace {
 
 /// Of any slab: far fewer leaf nodes than can be numbered.
 constexpr int64_t kMostSlabBytes = int64_t(8) << 30;
+/// That slabs can be cut for.
+constexpr int64_t kLeastSlabBytes = int64_t(32) << 20;
 
 /// \p memory: of this process; 0: not known.
 SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
   SlabLimits limits{kMostSlabBytes, o.slabHeight, o.segment.tidy};
   if (memory == 0) return limits;
-  constexpr int64_t kLeast = int64_t(32) << 20;
   limits.bytes = std::min(memory - kSlabOtherBytes, kMostSlabBytes);
-  if (limits.bytes < kLeast)
+  if (limits.bytes < kLeastSlabBytes)
     throw InvalidInput(
         fmt::format("slabs need at least {} of memory, and {} may be used: allow more",
-                    readableBytes(kSlabOtherBytes + kLeast), readableBytes(memory)),
+                    readableBytes(kSlabOtherBytes + kLeastSlabBytes), readableBytes(memory)),
         Hint::memoryLimit);
   return limits;
 }
@@ -209,9 +210,9 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
       {}, common.progress);
   builder.finish(storedDomain(*about));
   boundaryOf(o.boundary, o.input, *about, common.progress);
-  estimate.memory = kSlabOtherBytes + builder.bytes();
+  estimate.memory = kSlabOtherBytes + std::max(builder.bytes(), kLeastSlabBytes);
   estimate.slabs = int64_t(builder.slabCount());
-  estimate.scratch = estimate.voxels * (o.segment.gamma > 0 ? kFilteredScratch : kScratch);
+  estimate.scratch = estimate.voxels * (o.segment.gamma > 1 ? kFilteredScratch : kScratch);
   estimate.secondsRead = secondsSince(start);
   common.progress->end();
   say(o, common, estimate, jsonFile);

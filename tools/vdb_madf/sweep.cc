@@ -37,7 +37,7 @@ constexpr char kStrictnesses[] = "8:14:0.5", kThetas[] = "-1:-0.5:0.05", kDeltas
 
 struct SweepArguments {
   InputOptions input;
-  std::string out, plot, gamma = "0", merge = "score", strictness = kStrictnesses;
+  std::string out, plot, gamma, merge = "score", strictness = kStrictnesses;
   std::string theta = kThetas, delta = kDeltas, adjacency = "manifold";
   std::string boundary = "auto", small = "100", minGrain, fillHoles, tidy, scratch;
   SweepOptions sweep;
@@ -127,7 +127,7 @@ void parse(SweepArguments& o) {
     throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   SweepOptions& sweep = o.sweep;
   sweep.gammas.clear();
-  for (const std::string& gamma : listed(o.gamma, ','))
+  for (const std::string& gamma : listed(o.gamma.empty() ? "0" : o.gamma, ','))
     sweep.gammas.push_back(parseCount(gamma, "--gamma"));
   sweep.modes.clear();
   for (const std::string& mode : listed(o.merge, ',')) {
@@ -206,7 +206,7 @@ void checkManifoldOptions(const SweepArguments& o, const openvdb::MetaMap& manif
                        " out, or name a grid to segment: --grid grain");
   const auto gamma = manifolds.getMetadata<openvdb::Int64Metadata>("madf_gamma");
   const std::string stored = std::to_string(gamma ? gamma->value() : 0);
-  if (in.invert || o.boundary != "auto" || (o.gamma != "0" && o.gamma != stored))
+  if (in.invert || o.boundary != "auto" || (!o.gamma.empty() && o.gamma != stored))
     throw WrongUsage(in.path + ": the manifolds in it are those of gamma " + stored +
                      ": leave --gamma, --boundary and --invert out, or name a grid to segment: "
                      "--grid grain");
@@ -287,9 +287,9 @@ void addSweep(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   o->input.addRegion(verb);
-  verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
-      .typeName("LIST")
-      .showDefault();
+  verb.option("--gamma", o->gamma,
+              "list of gammas, voxels; one segmentation each (default: 0, or that of manifolds)")
+      .typeName("LIST");
   verb.option("--strictness", o->strictness, "list of numbers and of ranges FIRST:LAST:STEP")
       .typeName("LIST")
       .showDefault();
