@@ -32,6 +32,13 @@ def test_edits_are_those_of_the_command(seg, command, tmp_path):
     assert again.digest() == there.digest()
 
 
+def test_nothing_that_is_kept_has_no_counts(seg):
+    none = seg.labels.keep([])
+    assert len(none.ids) == 0 and none.shape == seg.labels.shape
+    assert "madf_grains" in seg.labels.metadata and "madf_grains" not in none.metadata
+    assert seg.labels.drop(seg.labels.ids).metadata == none.metadata
+
+
 def test_counts_are_those_of_the_edited_labels(seg):
     merged, dropped = seg.edit("merge 1 2"), seg.edit("drop 1")
     assert merged.counts["object_voxels"] == seg.counts["object_voxels"]

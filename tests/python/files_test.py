@@ -24,6 +24,7 @@ def test_mesh(labels, measured):
     low = measured.grains["box_min_x"][1] * 0.01 - 0.005
     assert points[:, 0].min() == pytest.approx(low, abs=1e-6)
     one = labels.mesh(smoothing=0, ids=[int(mesh.ids[1])])
+    assert len(labels.mesh(ids=labels.ids[:0]).ids) == 0
     assert (one.points == points).all() and (one.triangles == triangles).all()
     assert len(labels.mesh(smoothing=0, triangles=2000).triangles) <= 2000
     with pytest.raises(KeyError):

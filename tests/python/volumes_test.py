@@ -4,6 +4,7 @@
 
 import multiprocessing
 import operator
+import os
 import pickle
 import random
 from concurrent.futures import ProcessPoolExecutor
@@ -254,6 +255,13 @@ def test_a_file_that_is_not_what_was_written_is_refused(tmp_path):
         assert madf.Labels(path).ids.tolist() == [1]
     finally:
         madf.verify_files(True)
+
+
+def test_metadata_of_other_encodings(array, command, tmp_path):
+    name = tmp_path / os.fsdecode(b"\xb5.npy")
+    np.save(name, array)
+    command("segment", name, tmp_path / "l.vdb", "--phase", "1")
+    assert madf.Labels(tmp_path / "l.vdb").metadata["madf_source"].endswith("\ufffd.npy")
 
 
 def test_a_volume_made_of_one_keeps_place_and_region(array):

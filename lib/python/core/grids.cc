@@ -33,13 +33,24 @@ void read(const Grid& grid, const Index& first, py::array_t<T, py::array::c_styl
   openvdb::tools::copyToDense(grid, dense);
 }
 
+template <typename T>
+py::object asPython(const T& plain) {
+  return py::cast(plain);
+}
+
+/// Names of files need not be UTF-8.
+py::object asPython(const std::string& text) {
+  return py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(text.data(), py::ssize_t(text.size()), "replace"));
+}
+
 /// But for what OpenVDB notes on the file.
 py::dict metadataOf(const openvdb::GridBase& grid) {
   py::dict metadata;
   for (auto item = grid.beginMeta(); item != grid.endMeta(); ++item)
     if (const auto value = plainValue(*item->second); value && item->first.rfind("file_", 0) != 0)
       metadata[py::str(item->first)] =
-          std::visit([](const auto& plain) { return py::cast(plain); }, *value);
+          std::visit([](const auto& plain) { return asPython(plain); }, *value);
   return metadata;
 }
 

@@ -39,9 +39,7 @@ py::tuple boxOfLabel(const GridPtr& labels, int32_t label) {
 
 GridPtr selected(const GridPtr& labels, const std::vector<int32_t>& ids, const Call& call) {
   return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
-    if (!ids.empty()) return selectGrains(asLabels(*labels), ids, interrupter);
-    const Int32Grid::Ptr none = asLabels(*labels).copyWithNewTree();
-    return none;
+    return selectGrains(asLabels(*labels), ids, interrupter);
   });
 }
 
@@ -100,12 +98,13 @@ py::dict toDict(GrainMesh mesh) {
 }
 
 py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
-              const std::optional<int64_t>& triangles, const std::vector<int32_t>& ids) {
+              const std::optional<int64_t>& triangles,
+              const std::optional<std::vector<int32_t>>& ids) {
   return toDict(withoutLock(call, [&](Interrupter* interrupter) {
     const GrainMeshOptions options = meshOptions(smoothing, triangles);
     Int32Grid::ConstPtr grid = openvdb::gridConstPtrCast<Int32Grid>(labels);
     asLabels(*labels);
-    if (!ids.empty()) grid = selectGrains(*grid, ids, interrupter);
+    if (ids) grid = selectGrains(*grid, *ids, interrupter);
     GrainMesh made = grainMesh(*grid, options, interrupter);
     made.points = worldPoints(made, grid->transform());
     return made;

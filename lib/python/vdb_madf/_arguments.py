@@ -81,16 +81,16 @@ def _fits(value: Any, hint: Any) -> bool:
     if hint is bool:
         return isinstance(value, (bool, np.bool_))
     if hint is int:
-        return not isinstance(value, (bool, np.bool_)) and _is_index(value)
+        return not isinstance(value, (bool, np.bool_)) and is_index(value)
     if hint is float:
         return (hasattr(value, "__float__") and not isinstance(value, (bool, np.bool_))
                 and getattr(value, "ndim", 0) == 0)
     if hint is ArrayLike3D:
         return isinstance(value, (list, tuple)) or hasattr(value, "shape")
     if origin is tuple:
-        return _are_items(value) and len(value) == len(parts) and all(map(_fits, value, parts))
+        return are_items(value) and len(value) == len(parts) and all(map(_fits, value, parts))
     if origin is collections.abc.Sequence:
-        return _are_items(value) and all(_fits(item, parts[0]) for item in value)
+        return are_items(value) and all(_fits(item, parts[0]) for item in value)
     if origin is collections.abc.Callable:
         return callable(value)
     kind = origin or hint
@@ -105,7 +105,7 @@ def _number(hint: Any) -> Any:
     return typing.get_origin(number) or number
 
 
-def _is_index(value: Any) -> bool:
+def is_index(value: Any) -> bool:
     try:
         operator.index(value)
     except TypeError:
@@ -113,7 +113,7 @@ def _is_index(value: Any) -> bool:
     return True
 
 
-def _are_items(value: Any) -> bool:
+def are_items(value: Any) -> bool:
     return (isinstance(value, collections.abc.Collection)
             and not isinstance(value, (str, bytes, collections.abc.Mapping))
             and getattr(value, "ndim", 1) > 0)

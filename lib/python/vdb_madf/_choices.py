@@ -7,10 +7,10 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import Any, Collection, Optional, Sequence, Tuple, Union
+from typing import Any, Optional, Sequence, Tuple, Union
 
 from . import _core
-from ._arguments import refuse_wrong_types
+from ._arguments import are_items, refuse_wrong_types
 from ._arrays import readable
 
 #: numpy.s_[10:90, :, 5:50]: along z, y and x.
@@ -96,15 +96,15 @@ def volume_options(
         raise ValueError("give only one of phase, threshold and range")
     if despeckle < 0:
         raise ValueError(f"despeckle={despeckle}: must be 0 or more")
-    if isinstance(phase, Collection) and not phase:
+    if are_items(phase) and len(phase) == 0:
         raise ValueError("phase=[]: names no value")
     options = _core.VolumeOptions()
     if phase is not None:
-        options.select_phases([_finite("phase", v) for v in phase] if isinstance(phase, Collection)
+        options.select_phases([_finite("phase", v) for v in phase] if are_items(phase)
                               else [_finite("phase", phase)])
     if isinstance(threshold, str):
         options.select_automatically(threshold)
-    elif isinstance(threshold, Collection):
+    elif are_items(threshold):
         low, high = (_finite("threshold", v) for v in threshold)
         if low > high:
             raise ValueError(f"threshold={threshold}: the first value exceeds the second")

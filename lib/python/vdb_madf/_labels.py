@@ -196,7 +196,7 @@ class Labels(Volume):
         for it."""
         with calling(progress, threads) as call:
             arrays = _core.mesh(self._grid, call, smoothing=smoothing, triangles=triangles,
-                                ids=[] if ids is None else [int(i) for i in ids])
+                                ids=None if ids is None else [int(i) for i in ids])
         return Mesh(**arrays, unit=self.unit)
 
     @checked

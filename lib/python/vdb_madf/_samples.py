@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import checked
+from ._arguments import checked, is_index
 from ._calls import Progress, calling, meters
 from ._labels import Labels
 from ._mask import Mask
@@ -52,7 +52,7 @@ def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, 
     10000 and solid at 30000; blur and noise are then in the scan alone. Of spheres, sintered,
     particles, bed and balls."""
     given: Dict[str, Any] = dict(
-        size=(size, size, size) if isinstance(size, int) else size, seed=seed, count=count,
+        size=(size, size, size) if is_index(size) else size, seed=seed, count=count,
         radius=radius, overlap=overlap, max_cover=max_cover, fraction=fraction, length=length,
         neck=neck, roughness=roughness, shape=shape, lognormal=lognormal, aspect=aspect,
         rounds=rounds, surface=surface, surface_length=surface_length, blur=blur, noise=noise,

@@ -11,7 +11,7 @@ from typing import Any, Dict, Optional, Sequence, Tuple, Union
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import checked
+from ._arguments import checked, is_index
 from ._arrays import Source
 from ._calls import Progress, bytes_of, calling, warn
 from ._choices import Box
@@ -145,7 +145,7 @@ class Segmentation:
         used = {**_core.merge_options({"merge": "both"}), **_core.merge_options({"merge": "score"}),
                 **self.options}
         deltas = ([used["delta"]] if delta is None else
-                  [delta] if isinstance(delta, int) else [int(d) for d in delta])
+                  [delta] if is_index(delta) else [int(d) for d in delta])
         with calling(progress, threads) as call:
             return _core.sweep(
                 self._manifolds(), call, modes=modes, deltas=deltas,

@@ -33,7 +33,7 @@ class Tracks:
     before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a grain: `id`, `fate` ("kept", "split", "merged", "vanished", "outside"), `track`,
     `voxels`, `shared_voxels` (in what both volumes show), `links`, `partner`, `overlap_voxels`.
-    With a motion ("kept", "lost", "outside") the last are `partner`, `confidence` (0 to 1), `miss`
+    With a motion ("kept", "split", "merged", "lost", "outside") the last are `partner`, `confidence` (0 to 1), `miss`
     (voxels from where its neighbors say it is), `displacement` (z, y, x), `cut` (a scan ends within
     the grain: the displacement is that of its neighbors), `neighbors` (that these are of:)
     `gradient` (3 x 3), `strain_volumetric`, `strain_deviatoric` (Green-Lagrange),
