@@ -308,6 +308,19 @@ TEST_CASE("edit_labels: what is not there is refused, and why", "[edit_labels]")
        "strictness 10.5: these labels were merged with the strictness 11: edit those that "
        "'vdb_madf remerge --strictness 10.5' makes");
   CHECK(edited(*labels, {"strictness 11", "drop 3"}).grains == 1);
+  // Edits that were not made of texts are checked, too.
+  Edit edit;
+  edit.kind = Edit::Kind::merge;
+  for (const std::vector<int32_t>& grains : {std::vector<int32_t>{}, {3}, {3, 3}}) {
+    edit.grains = grains;
+    CHECK_THROWS_AS(editLabels(*labels, {edit}), InvalidInput);
+  }
+  edit.kind = Edit::Kind::split;
+  edit.grains = {};
+  CHECK_THROWS_AS(editLabels(*labels, {edit}), InvalidInput);
+  edit.kind = Edit::Kind::minDiameter;
+  edit.diameter = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(editLabels(*labels, {edit}), InvalidInput);
   StopAtOnce stop;
   CHECK_THROWS_AS(editLabels(*labels, editsFrom({"merge 3 7"}), nullptr, &stop), Interrupted);
 }

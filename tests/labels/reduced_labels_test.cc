@@ -54,6 +54,10 @@ TEST_CASE("reduced_labels: each coarse voxel has the most frequent label", "[red
       const LabelMap expected = reducedByCounting(voxels, factor, domain);
       CHECK(reduced->activeVoxelCount() == expected.size());
       for (const auto& [p, label] : expected) REQUIRE(reduced->tree().getValue(p) == label);
+      // The same of slabs, which leaves labels as they are that are in memory.
+      const auto again = reduceLabels(singleSlab(labels), factor);
+      CHECK(again->activeVoxelCount() == expected.size());
+      CHECK(labels->activeVoxelCount() == voxels.size());
     }
 }
 

@@ -223,6 +223,12 @@ TEST_CASE("match_grains: grains that make no sense are refused, and work can be 
   refused([](GrainFeatures& g) { g.volume = 0; });
   refused([](GrainFeatures& g) { g.center[1] = std::nan(""); });
   refused([](GrainFeatures& g) { g.moments[4] = std::numeric_limits<double>::infinity(); });
+  for (const double scale : {0.0, -1.0, double(std::nanf("")), 1e200}) {  // no guess of a motion
+    Motion guess;
+    guess.linear *= scale;
+    CHECK_THROWS_AS(matchGrains(moved.before, moved.after, {MotionKind::affine, guess}),
+                    InvalidInput);
+  }
   StopAtOnce stop;
   CHECK_THROWS_AS(matchGrains(moved.before, moved.after, {}, &stop), Interrupted);
 }

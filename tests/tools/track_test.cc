@@ -312,6 +312,11 @@ TEST_CASE("cli: a series of scans keeps one number a grain", "[cli]") {
   CHECK(bench.bytes("out/c.vdb") == bench.bytes("next.vdb"));
   CHECK(bench.bytes("out/c_grains.csv") == bench.bytes("g.csv"));
   refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb out --grains g.csv", {"g.csv", "folder"});
+  // Each scan is read as it has to be: a layout is of those alone that do not tell theirs.
+  bench.mustRun("convert a.vdb a.raw --grid grain -q");
+  bench.mustRun("convert c.vdb c.raw --grid grain -q");
+  bench.mustRun("track a.raw b.vdb c.raw raws --dims 48x48x48 --type int32 -q");
+  CHECK(bench.bytes("raws/c_grains.csv") == bench.bytes("g.csv"));
   refuses(bench, kWrongUsage, "track a.vdb b.vdb b.vdb other", {"b.vdb"});
   refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb .", {"b.vdb"});
   refuses(bench, kFailed, "track a.vdb b.vdb none.vdb other", {"none.vdb"});

@@ -255,6 +255,9 @@ TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
   CHECK_THAT(
       refusal([](Int32Grid& l) { l.insertMeta(kEditsKey, openvdb::StringMetadata("merge 1 2")); }),
       Contains("edited"));
+  CHECK_THAT(
+      refusal([](Int32Grid& l) { l.insertMeta("madf_track", openvdb::StringMetadata("0 0 0")); }),
+      Contains("tracked"));
   CHECK_THAT(refusal([](Int32Grid& l) {
                l.removeMeta("madf_domain_min");
                l.removeMeta("madf_domain_max");

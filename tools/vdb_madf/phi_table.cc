@@ -3,7 +3,11 @@
 
 #include "track_output.h"
 
+#include <fmt/core.h>
+
 #include <sstream>
+
+#include "vdb_madf/base/errors.h"
 
 namespace vdb_madf::tools {
 
@@ -30,6 +34,12 @@ std::string phiTable(const Tracks& tracks, const Coord& firstBefore, const Coord
   tsv << "Label\tZpos\tYpos\tXpos\tFzz\tFzy\tFzx\tZdisp\tFyz\tFyy\tFyx\tYdisp\tFxz\tFxy\tFxx\tXdisp"
          "\terror\titerations\treturnStatus\tdeltaPhiNorm\n";
   const openvdb::Vec3d zero(0), between = (firstBefore - firstAfter).asVec3d();
+  constexpr int32_t kMostRows = 10'000'000;  // of what spam reads back
+  if (!tracks.before.empty() && tracks.before.back().grain > kMostRows)
+    throw InvalidInput(fmt::format(
+        "--phi has a row for each number up to the largest label before, {}: renumber the labels "
+        "first (edit --renumber)",
+        tracks.before.back().grain));
   int32_t next = 0;
   for (size_t n = 0; n < tracks.before.size(); ++n) {
     const int32_t label = tracks.before[n].grain;

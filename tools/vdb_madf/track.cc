@@ -67,6 +67,7 @@ std::vector<std::string> parseSeries(TrackArguments& o) {
     InputOptions before = o.before, after = o.after;
     after.path = scan;
     parsePair(before, after, outputs);
+    o.later.push_back(after);
   }
   return outputs;
 }
@@ -175,7 +176,7 @@ void writeInSlabs(const std::string& path, const AnyLabels& labels, const std::s
   const SlabFolderWriter folder(path, written.cuts);
   for (size_t slab = 0; slab < written.slabCount(); ++slab)
     folder.write(slab, {written.read(slab, common.progress)}, common.progress);
-  folder.commit(Json({{"input", source}}).dump());
+  folder.commit(Json({{"input", source}}).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// Both scans, and where the whole has gone, as an OME-Zarr.
@@ -198,22 +199,23 @@ void writeScene(const TrackArguments& o, const Int32Grid& before, const Int32Gri
 /// What a series has made is kept scan by scan: it may have taken hours. Says which files in the
 /// folder are not of it, if it ends before `scan` is done.
 void noteOlderFiles(const TrackArguments& o, const std::string& scan, const Common& common) {
-  const std::vector<std::string> scans = laterScans(o);
-  const bool anyOlder = std::any_of(std::find(scans.begin(), scans.end(), scan), scans.end(),
-                                    [&](const std::string& later) {
-                                      return std::filesystem::exists(seriesFiles(o, later).grains);
-                                    });
+  const auto isOlder = [&](const InputOptions& later) {
+    return std::filesystem::exists(seriesFiles(o, later.path).grains);
+  };
+  const auto first = std::find_if(o.later.begin(), o.later.end(),
+                                  [&](const InputOptions& later) { return later.path == scan; });
+  const bool anyOlder = std::any_of(first, o.later.end(), isOlder);
   if (anyOlder)
     common.progress->note(o.more.back() + ": what it has of " + scan +
                           " and later scans is of an earlier run");
 }
 
 /// Tracks one scan of a series from the one before it. Returns its labels with the tracks.
-AnyLabels runScan(TrackArguments& o, const std::string& scan, const AnyLabels& before, bool bySlabs,
+AnyLabels runScan(const TrackArguments& o, const AnyLabels& before, bool bySlabs,
                   const Common& common) {
+  const std::string& scan = o.after.path;
   const SeriesFiles files = seriesFiles(o, scan);
   TextFile grainFile(files.grains), bondFile(files.bonds);
-  o.after.path = scan;
   const AnyLabels after =
       labelsOf(o.after, "--after-grid", bySlabs && hasSlabsEnding(files.labels), common);
   const PairNames names = namesOf(o.before, o.after);
@@ -230,7 +232,7 @@ AnyLabels runScan(TrackArguments& o, const std::string& scan, const AnyLabels& b
   bondFile.write(trackedBondTable(tracks));
   set.commit();
   if (!common.quiet) {
-    std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
+    std::printf("%s%s\n", scan == o.later.front().path ? "" : "\n", scan.c_str());
     print(o, tracks, summaryOf(o, tracks));
   }
   return labels;
@@ -238,21 +240,22 @@ AnyLabels runScan(TrackArguments& o, const std::string& scan, const AnyLabels& b
 
 /// Each scan but the first one is tracked from the one before it, which has the tracks by now.
 void runSeries(TrackArguments o, const Common& common) {
-  for (const std::string& scan : laterScans(o))  // before hours of work
-    if (!std::filesystem::exists(scan))
-      throw IoError(scan + ": cannot be opened: No such file or directory");
+  for (const InputOptions& later : o.later)  // before hours of work
+    if (!std::filesystem::exists(later.path))
+      throw IoError(later.path + ": cannot be opened: No such file or directory");
   OutputFolder folder(o.more.back());
   const bool bySlabs = o.track.motion.has_value();
   AnyLabels before = labelsOf(o.before, "--before-grid", bySlabs, common);
-  for (const std::string& scan : laterScans(o)) {
+  for (const InputOptions& later : o.later) {
+    o.after = later;
     try {
-      before = runScan(o, scan, before, bySlabs, common);
+      before = runScan(o, before, bySlabs, common);
     } catch (...) {
-      noteOlderFiles(o, scan, common);
+      noteOlderFiles(o, later.path, common);
       throw;
     }
     folder.keep();
-    o.before.path = scan;
+    o.before.path = later.path;
   }
 }
 

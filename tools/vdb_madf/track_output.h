@@ -17,7 +17,8 @@ namespace vdb_madf::tools {
 /// What is typed for track.
 struct TrackArguments {
   InputOptions before, after;
-  std::vector<std::string> more;  // of a series: further scans, and the folder
+  std::vector<InputOptions> later;  // filled by parsing a series: each scan but the first
+  std::vector<std::string> more;    // of a series: further scans, and the folder
   TrackOptions track;
   std::string out, shift, motion, json, grains, links, bonds, phi, network,
       minFaces = "1", sureFaces = std::to_string(track.sureFaces);
@@ -47,7 +48,7 @@ std::string trackedBondTable(const Tracks& tracks);
 std::string phiTable(const Tracks& tracks, const Coord& firstBefore, const Coord& firstAfter);
 
 /// The grains and bonds of before, with what became of them, for writeNetwork(). Grains have
-/// `voxels`, `fate` (its position in GrainFate), `partner` (0: none), `confidence`, `miss`,
+/// `voxels`, `fate` (its position in GrainFate), `partner` (0: none), `confidence`, `miss`, `cut`,
 /// `displacement_x`, `_y`, `_z`, `strain_volumetric`, `strain_deviatoric`, `rotation_x`, `_y`, `_z`
 /// (degrees); bonds `faces` and `fate` (its position in BondFate). Places and displacements are in
 /// world units. NaN: not known.

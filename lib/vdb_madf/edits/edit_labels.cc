@@ -84,12 +84,13 @@ class Editor {
   }
 
   EditResult apply(const Edit& edit) {
+    checkEdit(edit);
     result_ = {};
     result_.edit = edit;
     for (const int32_t grain : edit.grains) require(grain);
     switch (edit.kind) {
       case Kind::split:
-        split(edit.grains.at(0));
+        split(edit.grains[0]);
         break;
       case Kind::merge:
         merge(edit.grains);
@@ -158,7 +159,7 @@ class Editor {
 
   void merge(const std::vector<int32_t>& numbers) {
     for (size_t i = 1; i < numbers.size(); ++i) join(numbers[i], numbers[0]);
-    result_.grains = {numbers.at(0)};
+    result_.grains = {numbers[0]};
   }
 
   void joinBelow(int64_t least) {

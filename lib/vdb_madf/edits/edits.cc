@@ -70,20 +70,6 @@ int32_t grainFrom(const std::string& text) {
   return int32_t(grain);
 }
 
-std::vector<int32_t> grainsFrom(const std::vector<std::string>& texts, const Word& word) {
-  std::vector<int32_t> grains;
-  for (const std::string& text : texts) grains.push_back(grainFrom(text));
-  std::vector<int32_t> sorted = grains;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end()) throw InvalidInput(fmt::format("grain {} is named twice", *twice));
-  if (grains.size() < word.least || grains.size() > word.most)
-    throw InvalidInput(fmt::format(
-        "{} takes {}, and is given {}", word.name,
-        word.most == 1 ? "one grain" : std::to_string(word.least) + " or more", grains.size()));
-  return grains;
-}
-
 int64_t voxelsFrom(const std::string& text) {
   const auto number = detail::integers(text);
   if (!number || number->size() != 1 || number->front() < 0)
@@ -141,6 +127,21 @@ std::string toString(const Edit& edit) {
   return text;
 }
 
+void checkEdit(const Edit& edit) {
+  if (!std::isfinite(edit.diameter) || !std::isfinite(edit.strictness))
+    throw InvalidInput(fmt::format("{} takes finite numbers", toString(edit.kind)));
+  const Word& word = wordOf(edit.kind);
+  if (word.takes != Takes::grains) return;
+  std::vector<int32_t> sorted = edit.grains;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) throw InvalidInput(fmt::format("grain {} is named twice", *twice));
+  if (sorted.size() < word.least || sorted.size() > word.most)
+    throw InvalidInput(fmt::format(
+        "{} takes {}, and is given {}", word.name,
+        word.most == 1 ? "one grain" : std::to_string(word.least) + " or more", sorted.size()));
+}
+
 Edit parseEdit(const std::string& text) {
   std::vector<std::string> words = wordsOf(text);
   if (words.empty()) throw InvalidInput("there is no edit");
@@ -149,7 +150,8 @@ Edit parseEdit(const std::string& text) {
   Edit edit;
   edit.kind = word.kind;
   if (word.takes == Takes::grains) {
-    edit.grains = grainsFrom(words, word);
+    for (const std::string& number : words) edit.grains.push_back(grainFrom(number));
+    checkEdit(edit);
     return edit;
   }
   const size_t wanted = word.takes == Takes::nothing ? 0 : 1;

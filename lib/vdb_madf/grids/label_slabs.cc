@@ -11,7 +11,7 @@ LabelSlabs singleSlab(const Int32Grid::Ptr& labels) {
   slabs.cuts = {0, 8};
   if (!labels->empty() && !box.empty()) slabs.cuts = {box.min().z() & ~7, (box.max().z() | 7) + 1};
   slabs.read = [labels](size_t, Interrupter*) { return labels; };
-  slabs.about = labels;
+  slabs.about = labels->copyWithNewTree();
   return slabs;
 }
 

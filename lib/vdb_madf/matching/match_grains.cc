@@ -34,12 +34,19 @@ void check(const GrainSet& set) {
   }
 }
 
+void check(const Motion& guess) {
+  const double determinant = guess.linear.det();
+  if (guess.shift.isFinite() && determinant > 0 && std::isfinite(determinant)) return;
+  throw InvalidInput("a guess of the motion has finite numbers and a determinant above 0");
+}
+
 }  // namespace
 
 std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet& after,
                                           const MatchOptions& options, Interrupter* interrupter) {
   check(before);
   check(after);
+  if (options.guess) check(*options.guess);
   const detail::ScanGrains first(before, interrupter), second(after, interrupter);
   const detail::SeedSearch search(first, second, options);
   std::optional<detail::Following> following;

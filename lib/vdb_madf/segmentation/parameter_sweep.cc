@@ -70,7 +70,7 @@ void detail::checkSweep(const SweepOptions& options) {
   if (options.gammas.empty() || options.modes.empty() || options.thetas.empty() ||
       options.deltas.empty() || options.strictnesses.empty())
     throw InvalidInput(
-        "nothing to sweep: give at least one gamma, one merge mode, one theta and one delta");
+        "nothing to sweep: give at least one gamma, merge mode, strictness, theta and delta");
   for (const int64_t gamma : options.gammas)
     if (gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
   MergeOptions merge;

@@ -166,7 +166,7 @@ Verification verify(const LabelSlabs& labels, const MaskGrid& object, int64_t ma
   Verification found;
   const auto domain = storedDomain(object);
   if (domain && (!definition.domain || *domain != *definition.domain)) {
-    found.fault = "their domain is not that of the object";
+    found.fault = "their domain is not that of the object (which has to be cropped as they were)";
     return found;
   }
   std::vector<std::pair<const char*, int64_t>> counts;

@@ -225,7 +225,8 @@ std::set<LabelPair> nearPairs(ScanLabels& labels, const std::set<LabelPair>& pai
           for (const int step : {-1, 1}) {
             Coord next = p;
             next[axis] += step;
-            inside += values.getValue(next) == label;
+            int32_t value = 0;
+            inside += values.probeValue(next, value) && value == label;
           }
         if (inside == 6) return;
         for (const auto& [squared, step] : ball) {
@@ -261,7 +262,8 @@ std::set<LabelPair> solidPairs(ScanLabels& labels, ScanLabels& other,
         for (int axis = 0; axis < 3; ++axis) {
           Coord next = p;
           ++next[axis];
-          const int32_t touched = from.getValue(next);
+          int32_t touched = 0;
+          if (!from.probeValue(next, touched)) continue;
           const LabelPair pair = std::minmax(label, touched);
           if (!pairs.count(pair)) continue;
           const Motion *const first = motion(label), *const second = motionThere(touched);

@@ -44,6 +44,8 @@ Definition::Definition(const openvdb::MetaMap& metadata) : domain(storedDomain(m
   using openvdb::DoubleMetadata;
   if (metadata["madf_edits"])
     throw InvalidInput("the labels were edited, so no definition gives them: verify those before");
+  if (metadata["madf_track"])
+    throw InvalidInput("the labels were tracked, so their numbers are others: verify those before");
   open = toldWord(metadata, "madf_boundary", "open", "closed");
   if (open && !domain)
     throw InvalidInput("the labels say that their boundary is open, but not what their domain is");
