@@ -71,6 +71,13 @@ TEST_CASE("pair_checks: what differs between the two of a comparison is said", "
   REQUIRE(notes(*first, *same).size() == 1);
   CHECK_THAT(notes(*first, *same)[0],
              Contains("the domains differ: [0, 0, 0] to [19, 19, 19] and [0, 0, 0] to [20, 20"));
+  const Int32Grid::Ptr moved = first->deepCopy();
+  for (const Int32Grid::Ptr& grid : {first, moved}) setVoxelSize(*grid, VoxelSize(1e-5));
+  CHECK(notes(*first, *moved).empty());
+  moved->setTransform(first->transform().copy());
+  moved->transform().preTranslate(openvdb::Vec3d(0, 3, 0.3));
+  REQUIRE(notes(*first, *moved).size() == 1);
+  CHECK_THAT(notes(*first, *moved)[0], Contains("differ by 0.0, -3.0, -0.3 voxels; voxels of"));
 }
 
 TEST_CASE("pair_checks: tracks of unrelated samples are said to be", "[pair_checks]") {

@@ -91,6 +91,12 @@ TEST_CASE("evolve: the motion is what was asked for", "[evolve]") {
   CHECK((turned.motion.linear * Vec3d(0, 1, 0) - Vec3d(-1, 0, 0)).length() < 1e-14);
   CHECK((turned.motion.linear * Vec3d(0, 0, 1) - Vec3d(0, 0, 1)).length() < 1e-14);
 
+  // The voxels stay where they are in the world.
+  const auto placed = labels->deepCopy();
+  placed->transform().preTranslate(Vec3d(3, 0, -7));
+  CHECK(evolved(*placed, options, 1).labels->indexToWorld(Vec3d(0)) ==
+        placed->indexToWorld(Vec3d(0)));
+
   options = someMotion();
   const auto partly = evolved(*labels, options, 1);
   const Vec3d center = vdb_madf::boxOf(*labels).getCenter(), axis(1, 2, 2);

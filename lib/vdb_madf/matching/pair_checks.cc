@@ -54,6 +54,13 @@ struct Chance {
   }
 };
 
+std::string placeText(const openvdb::Vec3d& place) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis)
+    text += (axis > 0 ? ", " : "") + detail::fixedDecimal(place[axis], 1);
+  return text;
+}
+
 std::string percent(double share) {
   return detail::fixedDecimal(100 * share, 1) + " %";
 }
@@ -105,6 +112,11 @@ std::vector<std::string> notesOn(const Comparison& comparison, const Int32Grid& 
   if (a && b && *a != *b)
     notes.push_back("the domains differ: " + domainText(*a) + " and " + domainText(*b) +
                     "; voxels of equal index are compared");
+  const openvdb::Vec3d apart = test.worldToIndex(truth.indexToWorld(openvdb::Vec3d(0)));
+  const double most = std::max({std::abs(apart.x()), std::abs(apart.y()), std::abs(apart.z())});
+  if (storedVoxelSize(truth) && storedVoxelSize(test) && most > 0.5)
+    notes.push_back("their places in the world differ by " + placeText(apart) +
+                    " voxels; voxels of equal index are compared");
   return notes;
 }
 

@@ -295,6 +295,7 @@ Evolution::Evolution(const Int32Grid& labels, const EvolveOptions& options,
       tree_(detail::withoutTiles(labels)),
       domain_(storedDomain(labels)),
       voxelSize_(storedVoxelSize(labels)),
+      transform_(labels.transform().copy()),
       center_(boxOf(labels).getCenter()) {
   checkEvolve(options);
   requireCubicVoxels(labels, "moving grains");
@@ -355,6 +356,7 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
   result.bonds = bondsOf(result, broken, interrupter);
   result.labels->setName("grain");
   setVoxelSize(*result.labels, voxelSize_);
+  result.labels->setTransform(transform_->copy());  // which has the place, too
   result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options_, step)));
   return result;
 }

@@ -109,6 +109,7 @@ class Evolution {
   Int32Tree::ConstPtr tree_;  ///< without tiles
   std::optional<Domain> domain_;
   std::optional<VoxelSize> voxelSize_;
+  openvdb::math::Transform::ConstPtr transform_;
   openvdb::Vec3d center_;  ///< of the box
   GrainSet before_;
 };
