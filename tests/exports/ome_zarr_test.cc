@@ -43,7 +43,6 @@ Wanted reduced(const LabelMap& voxels, const CoordBBox& box, int factor) {
   std::map<Coord, int64_t> known;
   for (auto p = box.begin(); p; ++p) ++known[floorDiv(*p, factor) - first];
   Wanted wanted;
-  const int64_t all = int64_t(factor) * factor * factor;
   for (const auto& [p, labels] : counts) {
     int64_t labeled = 0, most = 0;
     uint32_t label = 0;
@@ -54,7 +53,7 @@ Wanted reduced(const LabelMap& voxels, const CoordBBox& box, int factor) {
       label = uint32_t(candidate);
     }
     if (most > known[p] - labeled) wanted.labels[p] = label;
-    const auto gray = uint32_t(std::floor(255.0 * double(labeled) / double(all) + 0.5));
+    const auto gray = uint32_t(std::floor(255.0 * double(labeled) / double(known[p]) + 0.5));
     if (gray) wanted.gray[p] = gray;
   }
   return wanted;

@@ -115,6 +115,14 @@ TEST_CASE("label_preview: density is the labeled part, color that of the commone
     const auto grid = labelGrid(voxels);
     const GrainColors colors = grainColors(*grid);
     const LabelPreview preview = previewLabels(*grid, factor);
+    // Beyond a box there is nothing that a voxel could be part of.
+    const CoordBBox box = CoordBBox::createCube(Coord(-6), 17);
+    const auto withBox = grid->deepCopy();
+    setDomain(*withBox, box);
+    const LabelPreview inBox = previewLabels(*withBox, factor);
+    std::map<Coord, int> known;
+    for (auto p = box.begin(); p; ++p)
+      ++known[{below((*p).x(), factor), below((*p).y(), factor), below((*p).z(), factor)}];
     const auto cells = counted(voxels, factor);
     CHECK(preview.density->activeVoxelCount() == cells.size());
     CHECK(preview.color->activeVoxelCount() == cells.size());
@@ -123,6 +131,7 @@ TEST_CASE("label_preview: density is the labeled part, color that of the commone
       for (const auto& [label, count] : counts) labelled += count;
       CHECK(preview.density->tree().getValue(p) ==
             Approx(double(labelled) / (factor * factor * factor)));
+      CHECK(inBox.density->tree().getValue(p) == Approx(double(labelled) / known.at(p)));
       const Rgb rgb = colors.colorOf(mode(counts));
       const openvdb::Vec3f color = preview.color->tree().getValue(p);
       for (int c = 0; c < 3; ++c) {

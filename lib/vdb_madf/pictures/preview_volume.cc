@@ -19,7 +19,6 @@ namespace {
 LabelPreview preview(const Int32Grid& labels, const GrainColors& colors, int factor,
                      Interrupter* interrupter) {
   const detail::Reduction reduction(labels, factor, storedDomain(labels));
-  const float whole = float(int64_t(factor) * factor * factor);
   std::vector<std::unique_ptr<FloatGrid::TreeType::LeafNodeType>> densities(reduction.leafCount());
   std::vector<std::unique_ptr<ColorGrid::TreeType::LeafNodeType>> shades(reduction.leafCount());
   reduction.run(
@@ -29,7 +28,7 @@ LabelPreview preview(const Int32Grid& labels, const GrainColors& colors, int fac
         for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i) {
           if (!cells[i].labelled) continue;
           const Rgb rgb = colors.colorOf(cells[i].label);
-          densities[n]->setValueOn(i, float(cells[i].labelled) / whole);
+          densities[n]->setValueOn(i, float(cells[i].labelled) / float(cells[i].all));
           shades[n]->setValueOn(
               i, Vec3f(linearChannel(rgb[0]), linearChannel(rgb[1]), linearChannel(rgb[2])));
         }

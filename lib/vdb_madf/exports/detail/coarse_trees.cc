@@ -20,12 +20,7 @@ namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
 
-int64_t voxelsOf(int factor) {
-  return int64_t(factor) * factor * factor;
-}
-
-int32_t grayOf(int64_t labelled, int factor) {
-  const int64_t all = voxelsOf(factor);
+int32_t grayOf(int64_t labelled, int64_t all) {
   return int32_t((2 * 255 * labelled + all) / (2 * all));
 }
 
@@ -53,7 +48,8 @@ CoarseTrees coarseTrees(const Int32Grid& labels, int factor, const std::optional
         label[n] = leafAt<Int32Grid>(origin);
         gray[n] = leafAt<Int32Grid>(origin);
         for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-          const int32_t part = grayOf(cells[i].labelled, factor);
+          if (cells[i].labelled == 0) continue;
+          const int32_t part = grayOf(cells[i].labelled, cells[i].all);
           if (cells[i].majority) label[n]->setValueOn(i, cells[i].majority);
           if (part) gray[n]->setValueOn(i, part);
         }
@@ -112,9 +108,9 @@ CoarseTrees CoarseCounts::take(int end) {
       labelled += begin->voxels;
       if (begin->voxels > most->voxels) most = begin;  // of equal ones the smallest label
     }
-    if (most->voxels > fineVoxels(voxel, factor_, domain_) - labelled)
-      trees.label.setValueOn(voxel, most->label);
-    if (const int32_t part = grayOf(labelled, factor_)) trees.gray.setValueOn(voxel, part);
+    const int64_t all = std::max(fineVoxels(voxel, factor_, domain_), labelled);
+    if (most->voxels > all - labelled) trees.label.setValueOn(voxel, most->label);
+    if (const int32_t part = grayOf(labelled, all)) trees.gray.setValueOn(voxel, part);
   }
   entries_.erase(entries_.begin(), begin);
   return trees;

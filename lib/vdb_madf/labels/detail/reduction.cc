@@ -148,10 +148,11 @@ Cells Reduction::count(const std::vector<uint64_t>& keys, const Coord& origin) c
         cells[offset].label = int32_t(keys[run] & 0xffffffffu);
       }
     }
-    cells[offset].labelled = int64_t(end - begin);
+    Cell& cell = cells[offset];
+    cell.labelled = int64_t(end - begin);
     const Coord coarse = origin + Leaf::offsetToLocalCoord(openvdb::Index(offset));
-    const int64_t background = fineVoxels(coarse, factor_, domain_) - cells[offset].labelled;
-    cells[offset].majority = most > background ? cells[offset].label : 0;
+    cell.all = std::max(fineVoxels(coarse, factor_, domain_), cell.labelled);
+    cell.majority = most > cell.all - cell.labelled ? cell.label : 0;
   }
   return cells;
 }
@@ -163,7 +164,11 @@ void forEachPart(const LabelSlabs& labels, int factor,
   for (size_t s = 0; s < labels.slabCount(); ++s) {
     const Int32Grid::Ptr slab = labels.read(s, interrupter);
     slab->tree().voxelizeActiveTiles();
-    waiting->tree().merge(slab->tree());
+    // Nodes are taken from a slab, but not from labels that are whole and may be the caller's.
+    if (waiting->empty())
+      waiting->setTree(slab->treePtr());
+    else
+      waiting->tree().merge(slab->tree());
     const int64_t layer = 8 * int64_t(factor), cut = labels.cuts[s + 1];
     const int64_t end = cut - (cut % layer + layer) % layer;
     const Int32Grid::Ptr above = labels.about->deepCopy();

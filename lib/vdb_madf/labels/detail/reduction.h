@@ -33,6 +33,7 @@ struct Cell {
   int32_t majority = 0;  ///< of all in the box of the domain
   int32_t label = 0;     ///< of the labeled ones
   int64_t labelled = 0;
+  int64_t all = 0;  ///< in the box of the domain, and no fewer; 0 where there are no labels
 };
 using Cells = std::array<Cell, Int32Tree::LeafNodeType::SIZE>;
 
