@@ -46,7 +46,7 @@ VoxelSize voxelSizeFromText(const std::string& text) {
     if (!perMetre)
       throw InvalidInput(text + (rest[0] == ','
                                      ? commaHint(text)
-                                     : ": give a unit (nm, um, mm or m), for example 8.5um"));
+                                     : ": give a unit (nm, um, mm, cm or m), for example 8.5um"));
     // Dividing by a power of ten keeps decimal inputs exact to the last bit.
     edges.push_back(number.value / *perMetre);
     if (!(edges.back() >= 1e-10 && edges.back() <= 1))

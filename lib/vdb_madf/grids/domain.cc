@@ -23,7 +23,8 @@ __int128 volumeOf(const CoordBBox& box) {
 
 Domain::Domain(const MaskTree& region) {
   if (!region.evalActiveVoxelBoundingBox(box_))
-    throw InvalidInput("the region holds no voxel: give one that covers the sample");
+    throw InvalidInput(
+        "the region, as it was cropped, holds no voxel: give one that covers the sample");
   for (int axis = 0; axis < 3; ++axis)
     if (box_.min()[axis] < -kMaxCoordinate || box_.max()[axis] > kMaxCoordinate)
       throw InvalidInput("the region has coordinates beyond +-" + std::to_string(kMaxCoordinate));
