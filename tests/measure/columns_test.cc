@@ -237,6 +237,13 @@ TEST_CASE("columns: what is given of grains comes last", "[columns]") {
   CHECK(std::isnan(column(columns, "miss").values[1]));
   CHECK(column(columns, "turn").values[1] == -0.2);
   CHECK(givenColumns(moves, true).columns.at(0).values == std::map<int32_t, double>{{7, 9}});
+  // A column `side` is that of tracks beside their columns alone.
+  CHECK(givenColumns("id,side,a\n1,left,2\n").columns.at(0).values.at(1) == 2);
+  CHECK(givenColumns("grain,side,a\n1,0.5,2\n", true).columns.size() == 2);
+  extra.given = givenColumns("id,given_area,area\n3,5,6\n7,8,9\n").columns;
+  const auto both = grainColumns(grains, extra);
+  CHECK(column(both, "given_area").values[1] == 8);
+  CHECK(column(both, "given_given_area").values[1] == 9);
   CHECK(givenColumns("a,id\r\n1,2\r\n").columns.at(0).values.at(2) == 1);
   using vdb_madf::test::Contains;
   CHECK_THROWS_WITH(givenColumns(""), Contains("no column 'grain' or 'id'"));

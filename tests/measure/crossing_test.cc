@@ -6,6 +6,8 @@
 
 #include "vdb_madf/measure/crossing.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -253,6 +255,49 @@ TEST_CASE("crossing: the minimum cut is the least of all cuts", "[crossing]") {
   }
   CHECK(cuts > 40);
   CHECK(spanned > 40);
+}
+
+TEST_CASE("crossing: a bond of area 0 conducts nothing", "[crossing]") {
+  const CoordBBox box(Coord(0), Coord(2, 1, 1));
+  const auto labels = drawLabels(box, [](const Vec3d& p) {  // opposite faces cancel one another
+    const int label = int(std::min(1.0, p.x()) + p.y() + p.z()) % 2 + 1;
+    return p.x() < 2 || label == 1 ? label : 0;
+  });
+  setDomain(*labels, box);
+  const Measurements m = measureCrossing(*labels);
+  REQUIRE(m.bonds.size() == 1);
+  REQUIRE(m.bonds[0].area == 0);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    CHECK(m.bonds[0].crossing->current[axis] == 0);
+    CHECK(m.crossings->along[axis].conductivity >= 0);
+  }
+  CHECK(m.crossings->along[0].conductivity > 0);
+  for (const double component : m.crossings->conductivity.components)
+    CHECK(std::isfinite(component));
+}
+
+TEST_CASE("crossing: nothing flows through dead ends, and no more than all", "[crossing]") {
+  constexpr int kGrains = 150;
+  Rng rng(3);
+  std::vector<int> from{0};  // a rod of unequal pieces along x, with arms of two grains each
+  for (int i = 0; i < kGrains; ++i) from.push_back(from.back() + rng.between(3, 9));
+  const CoordBBox box(Coord(0, 0, 0), Coord(from.back() - 1, 3, 12));
+  const auto labels = drawLabels(box, [&](const Vec3d& p) {
+    const int i = int(std::upper_bound(from.begin(), from.end(), int(p.x())) - from.begin()) - 1;
+    if (p.z() < 4) return i + 1;
+    if (p.z() > 9 || int(p.x()) == from[size_t(i)] || i == kGrains - 1) return 0;
+    return i + 1 + kGrains * (p.z() < 7 ? 1 : 2);
+  });
+  setDomain(*labels, box);
+  const Measurements m = measureCrossing(*labels);
+  REQUIRE(m.bonds.size() == 3 * (kGrains - 1));
+  for (const BondMeasures& bond : m.bonds)
+    if (bond.second > kGrains) {
+      CHECK(bond.crossing->current[0] == 0);
+    } else {
+      CHECK(bond.crossing->current[0] <= 1);
+      CHECK(bond.crossing->current[0] == Approx(1).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("crossing: the conductivity is that of the network", "[crossing]") {

@@ -112,6 +112,21 @@ TEST_CASE("size_curve: deviations from another curve", "[size_curve]") {
                     vdb_madf::test::Contains("are in um, and the voxel size is unknown"));
 }
 
+TEST_CASE("size_curve: sizes and shares that tables show as equal are equal", "[size_curve]") {
+  MeasureOptions options;  // 3 * 0.1 > 0.3 in doubles
+  options.sizeReference = parseSizeReference("size_mm,percent_passing\n0.3,95\n");
+  const auto cubes = threeCubes();
+  setVoxelSize(*cubes, VoxelSize(1e-4));
+  CHECK(deviationOf(measure(*cubes, options), "feret_min") == Approx(5));
+  auto rods = Int32Grid::create(0);  // 0.07 * 100 > 7
+  rods->fill(CoordBBox(Coord(0), Coord(6, 0, 0)), 1);
+  rods->fill(CoordBBox(Coord(0, 5, 0), Coord(92, 5, 0)), 2);
+  setDomain(*rods, CoordBBox(Coord(-1), Coord(99, 9, 9)));
+  const Measurements measured = measure(*rods, options = {});
+  CHECK(curveColumn(sizeCurve(measured), "equivalent_diameter").values[7] ==
+        Approx(measured.grains[0].equivalentDiameter));
+}
+
 TEST_CASE("size_curve: what is no curve is refused", "[size_curve]") {
   const std::string begin = "size_mm,percent_passing\n";
   for (const auto& [text, what] : std::vector<std::pair<std::string, std::string>>{

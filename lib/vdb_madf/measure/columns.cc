@@ -59,14 +59,15 @@ class ColumnMaker {
   template <typename Number>
   void addGiven(const std::string& name, const Number& number) {
     add(name, 0, number);
-    for (size_t i = 0; i + 1 < columns_.size(); ++i)
-      if (isNameOf(columns_[i], name)) {
-        if (isSaidBy(columns_[i], columns_.back()))
-          columns_.pop_back();
-        else
-          columns_.back().name = givenName(name);
-        return;
-      }
+    MeasureColumn& given = columns_.back();
+    for (;;) {  // the name that is left may be taken, too
+      const auto same = std::find_if(columns_.begin(), columns_.end() - 1, [&](const auto& column) {
+        return isNameOf(column, given.name);
+      });
+      if (same == columns_.end() - 1) return;
+      if (isSaidBy(*same, given)) return columns_.pop_back();
+      given.name = givenName(given.name);
+    }
   }
   template <typename Number>
   void addCount(const std::string& name, const Number& number) {

@@ -25,7 +25,7 @@ using openvdb::Vec3d;
 
 constexpr double kAreaUnits = 1 << 20;  // of a cut, in a voxel face
 constexpr double kTolerance = 1e-12;    // of the potentials
-constexpr double kLeastCurrent = 1e-9;  // of all: what is less is no more than rounding
+constexpr double kLeastCurrent = 1e-7;  // of all: less is what the solver leaves over
 
 /// A bond as a conductor between two grains.
 struct Conductor {
@@ -151,7 +151,8 @@ void conduct(const GrainConductors& network, int axis, Measurements& measured, C
   for (size_t i = 0; i < measured.bonds.size(); ++i) {
     const auto& [ends, conductance] = network.bonds()[i];
     const double share = std::abs(potential[ends[1]] - potential[ends[0]]) * conductance / all;
-    measured.bonds[i].crossing->current[size_t(axis)] = share < kLeastCurrent ? 0 : share;
+    measured.bonds[i].crossing->current[size_t(axis)] =
+        share < kLeastCurrent ? 0 : std::min(share, 1.0);
   }
 }
 

@@ -37,7 +37,7 @@ struct Crossings {
 /// A bond in that, along x, y, z.
 struct BondCrossing {
   std::array<bool, 3> inCut{};      ///< the minimum cut has it
-  std::array<double, 3> current{};  ///< through it, of all that crosses the box; 1e-9 to 1, or 0
+  std::array<double, 3> current{};  ///< through it, of all that crosses the box; 1e-7 to 1, or 0
 };
 
 struct Measurements;

@@ -64,7 +64,7 @@ double correctedDiameterPercentile(const std::vector<GrainMeasures>& grains, dou
       sizes.emplace_back(grain.equivalentDiameter,
                          grain.edgeWeight * (byVolume ? double(grain.voxels) : 1.0));
   if (sizes.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return detail::weightedPercentile(std::move(sizes), share);
+  return detail::weightedPercentile(std::move(sizes), 100 * share);
 }
 
 }  // namespace vdb_madf

@@ -80,10 +80,11 @@ GivenTable givenColumns(const std::string& csv, bool ofLaterScan) {
   readCells(lines, names);
   if (const std::string mark = "\xEF\xBB\xBF"; names[0].rfind(mark, 0) == 0)
     names[0].erase(0, mark.size());  // as spreadsheets write it
-  const auto side = find(names, "side");
-  const auto grain = side && ofLaterScan    ? find(names, "track")
-                     : find(names, "grain") ? find(names, "grain")
-                                            : find(names, "id");
+  const bool isOfTracks = find(names, "side") && find(names, "grain") && find(names, "track");
+  const size_t side = isOfTracks ? *find(names, "side") : names.size();
+  const auto grain = isOfTracks && ofLaterScan ? find(names, "track")
+                     : find(names, "grain")    ? find(names, "grain")
+                                               : find(names, "id");
   if (!grain)
     throw InvalidInput("has no column 'grain' or 'id' that says of which grain a line is");
   std::vector<GivenColumn> columns(names.size());
@@ -104,7 +105,7 @@ GivenTable givenColumns(const std::string& csv, bool ofLaterScan) {
     if (cells.size() != names.size())
       throw InvalidInput(where + "has " + counted(cells.size(), "cell") + ", and the first " +
                          std::to_string(names.size()));
-    if (side && cells[*side] != (ofLaterScan ? "after" : "before")) continue;
+    if (isOfTracks && cells[side] != (ofLaterScan ? "after" : "before")) continue;
     const auto id = numberOf(cells[*grain]);
     constexpr double kMost = std::numeric_limits<int32_t>::max();
     if (!id || !(*id >= 1 && *id <= kMost) || *id != std::floor(*id))
@@ -121,7 +122,7 @@ GivenTable givenColumns(const std::string& csv, bool ofLaterScan) {
   for (size_t n = 0; n < names.size(); ++n)
     if (isNumber[n] && !columns[n].values.empty())
       result.columns.push_back(std::move(columns[n]));
-    else if (!side && !isOfGrain(n))
+    else if (!isOfTracks && !isOfGrain(n))
       result.leftOut.push_back(names[n]);
   if (result.columns.empty()) throw InvalidInput("has no column of numbers");
   return result;

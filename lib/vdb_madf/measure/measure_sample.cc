@@ -11,7 +11,7 @@ double diameterPercentile(const std::vector<GrainMeasures>& grains, double share
   std::vector<std::pair<double, double>> sizes;
   for (const GrainMeasures& grain : grains)
     sizes.emplace_back(grain.equivalentDiameter, byVolume ? double(grain.voxels) : 1.0);
-  return detail::weightedPercentile(std::move(sizes), share);
+  return detail::weightedPercentile(std::move(sizes), 100 * share);
 }
 
 }  // namespace vdb_madf

@@ -19,6 +19,7 @@ namespace vdb_madf {
 namespace {
 
 constexpr double kNoSize = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAsTables = 1 + 1e-8;        // sizes that tables show as equal are equal
 constexpr double kLowest = 5, kHighest = 95;  // per cent that deviations are taken of
 
 /// The columns of sizes, and what each row counts.
@@ -62,8 +63,7 @@ std::vector<MeasureColumn> sizeCurve(const Measurements& measured) {
       if (sizes.weights[i] > 0) items.emplace_back(kind.values[i], sizes.weights[i]);
     MeasureColumn column{kind.name, kind.kind, kind.power, 0, {}};
     for (const double percent : curve.front().values)
-      column.values.push_back(items.empty() ? kNoSize
-                                            : detail::weightedPercentile(items, percent / 100));
+      column.values.push_back(items.empty() ? kNoSize : detail::weightedPercentile(items, percent));
     curve.push_back(std::move(column));
   }
   return curve;
@@ -127,7 +127,7 @@ std::vector<SizeDeviation> sizeDeviations(const Measurements& measured,
       if (percent < kLowest || percent > kHighest) continue;
       double passing = 0;
       for (size_t i = 0; i < kind.values.size(); ++i)
-        if (kind.values[i] * edge <= size) passing += sizes.weights[i];
+        if (kind.values[i] * edge <= size * kAsTables) passing += sizes.weights[i];
       const double difference = 100 * passing / whole - percent;
       squares += difference * difference;
       ++points;

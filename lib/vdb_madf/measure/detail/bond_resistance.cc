@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vdb_madf::detail {
 
@@ -19,6 +20,10 @@ double radiusOf(double area) {
 std::vector<double> contactResistances(double volume, const std::vector<Contact>& contacts) {
   std::vector<double> result;
   for (const Contact& contact : contacts) {
+    if (contact.area == 0) {  // opposite faces can cancel one another
+      result.push_back(std::numeric_limits<double>::infinity());
+      continue;
+    }
     const double length = contact.arm.length(), radius = radiusOf(contact.area);
     if (length == 0) {  // in the middle of the grain, as of one that lies within it
       result.push_back(1 / (4 * radius));

@@ -19,8 +19,8 @@ namespace vdb_madf::detail {
 ///
 /// The least (squared distance, label) is separable: along z by the runs of labels in a column,
 /// along y and x as the lower envelope of parabolas (Meijster et al. 2000). Slices are independent.
-/// Memory: 12 bytes for each run of a label along z, and per thread some slices. Time: that of the
-/// domain's box.
+/// Memory: 24 bytes for each column of the domain's box along z, 12 for each run of a label in one,
+/// and per thread some slices. Time: that of the domain's box.
 class VoronoiCells {
  public:
   /// @param transform of the labels, which tells the edges of voxels
