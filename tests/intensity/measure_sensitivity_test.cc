@@ -139,6 +139,26 @@ TEST_CASE("measure_sensitivity: a bond is there in the runs whose threshold the 
   }
 }
 
+TEST_CASE("measure_sensitivity: runs without a grain, and what cannot be run",
+          "[measure_sensitivity]") {
+  const Sample sample(bridgedBalls(2000), 2600);
+  SensitivityOptions options = fixed();
+  options.threshold = 1200;  // 2600, 2000, 3200, 1700 and 2900: one of them above all values
+  const Measurements m = sample.recurring(options);
+  CHECK(*m.sensitivity->intervals[0].low < 1);
+  CHECK(*m.sensitivity->intervals[3].low < 0.1);
+  for (const size_t i : {1, 2, 4}) CHECK(*m.sensitivity->intervals[i].low > 0.05);
+  options.threshold = 2400;
+  CHECK_THROWS_WITH(sample.recurring(options),
+                    Contains("run 4 (threshold 800, smooth 0, strictness 11, gamma 1): ") &&
+                        Contains("the object fills the whole domain") && Contains("; vary less"));
+  options.threshold = 0;
+  options.smooth = 40;
+  CHECK(sample.recurring(options).sensitivity->smooth.high == 20);
+  CHECK_THROWS_WITH(options.vary("strictness", 1e6), Contains("strictness must be at most 200000"));
+  CHECK(options.vary("threshold", 1e6));
+}
+
 TEST_CASE("measure_sensitivity: of a dark object and of hysteresis", "[measure_sensitivity]") {
   std::vector<float> dark = bridgedBalls(1800);
   for (float& value : dark) value = -value;

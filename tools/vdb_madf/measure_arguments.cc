@@ -8,6 +8,7 @@
 #include "command.h"
 #include "outputs.h"
 #include "parse.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/measure/bootstrap.h"
 #include "vdb_madf/pictures/measures_plot.h"
 #include "wrong_usage.h"
@@ -35,8 +36,11 @@ void parseVary(const std::string& text, SensitivityOptions& options) {
       throw WrongUsage("--vary " + text +
                        ": write threshold:T,smooth:S,strictness:K,gamma:G, or some of these");
     const double number = isWhole ? double(parseCount(value, about)) : parseNumber(value, about);
-    if (!(number >= 0)) throw WrongUsage(about + ":" + value + ": must be 0 or more");
-    options.vary(name, number);
+    try {
+      options.vary(name, number);
+    } catch (const InvalidInput& error) {
+      throw WrongUsage(about + ":" + value + ": " + error.what());
+    }
   }
 }
 
@@ -79,7 +83,8 @@ void parse(MeasureArguments& o) {
     throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   o.input.parse();
   o.tables.density = parseDensity(o.ice, o.density);
-  if (o.stability && !hasVdbEnding(o.input.path) && !isInSlabs(o.input))
+  if (o.stability && !hasVdbEnding(o.input.path) && !hasSlabsEnding(o.input.path) &&
+      !isInSlabs(o.input))
     throw WrongUsage(o.input.path +
                      ": --stability needs what segment --keep manifold keeps, in .vdb or .slabs");
   checkScan(o.intensity, o.input);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,7 @@ constexpr double kMostError = 21, kMostErrorShare = 0.35, kMostGrowth = 3;
 // As many of the labeled voxels have to be on the grains' side of the scan's middle gray, and of
 // the others on the other side, in the mean; of a scan of something else it is a half.
 constexpr double kLeastAgreement = 0.65;
+constexpr size_t kSomeLeaves = 256;  // that tell it where no bond does
 
 /// Height of the last voxels that count in a section.
 const double kHeight = SectionFit::kReach + 4 * SectionFit::kThickness;
@@ -278,10 +280,12 @@ class NeckMeter {
   const double rim_;  // distance of voxel centers
 };
 
-/// The blur with the grains inside, which a scan may show darker than what is around them.
+/// The blur with the grains inside, which a scan may show darker than what is around them; none if
+/// the voxels that were read are all of grains, or all of what is around them.
 /// @throw InvalidInput, one line that names the scan, if it does not show the labels' grains
-ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const FloatTree& gray,
-                          const CoordBBox& known, const std::string& path) {
+std::optional<ScanBlur> withGrainsInside(const ScanBlur& blur, const Int32Tree& labels,
+                                         const FloatTree& gray, const CoordBBox& known,
+                                         const std::string& path) {
   const double middle = (blur.inside + blur.outside) / 2;
   int64_t voxels[2] = {0, 0}, bright[2] = {0, 0};  // of what is around grains, of grains
   for (auto leaf = gray.cbeginLeaf(); leaf; ++leaf) {
@@ -297,7 +301,7 @@ ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const F
       bright[isGrain] += value > middle;
     }
   }
-  if (voxels[0] == 0 || voxels[1] == 0) return blur;
+  if (voxels[0] == 0 || voxels[1] == 0) return std::nullopt;
   const double difference =
       double(bright[1]) / double(voxels[1]) - double(bright[0]) / double(voxels[0]);
   if (std::abs(difference) < 2 * kLeastAgreement - 1)
@@ -343,12 +347,32 @@ std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& mea
   return sections;
 }
 
+std::vector<CoordBBox> boxesOf(const std::vector<Section>& sections) {
+  std::vector<CoordBBox> boxes;
+  for (const Section& section : sections) boxes.push_back(section.box);
+  return boxes;
+}
+
+/// Of up to kSomeLeaves leaf nodes of the labels, with a voxel around each.
+std::vector<CoordBBox> boxesOfSome(const Int32Tree& labels, const CoordBBox& known) {
+  std::vector<CoordBBox> boxes;
+  const size_t step = size_t(labels.leafCount()) / kSomeLeaves + 1;
+  size_t at = 0;
+  for (auto leaf = labels.cbeginLeaf(); leaf; ++leaf) {
+    if (at++ % step != 0) continue;
+    boxes.push_back(leaf->getNodeBoundingBox());
+    boxes.back().expand(1);
+    boxes.back().intersect(known);
+  }
+  return boxes;
+}
+
 /// The scan's values in the leaf nodes that the boxes touch.
-FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
+FloatTree::Ptr readAround(const std::vector<CoordBBox>& boxes, GrayScan& scan,
                           Interrupter* interrupter) {
   auto tree = std::make_shared<FloatTree>(0.0F);
-  for (const Section& section : sections)
-    detail::forEachLeafOrigin(section.box, [&](const Coord& origin) { tree->touchLeaf(origin); });
+  for (const CoordBBox& part : boxes)
+    detail::forEachLeafOrigin(part, [&](const Coord& origin) { tree->touchLeaf(origin); });
   std::map<int, std::vector<FloatTree::LeafNodeType*>> layers;
   for (auto leaf = tree->beginLeaf(); leaf; ++leaf)
     layers[leaf->origin().z()].push_back(leaf.getLeaf());
@@ -404,16 +428,25 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
   if (const Coord size = scan.box().dim(); size[size.minIndex()] == 1)
     throw InvalidInput(scan.image->path() + ": is a slice, and necks are measured in a volume");
   const Int32Tree::ConstPtr tree = detail::withoutTiles(labels);
-  detail::WorkPart framing(interrupter, 0, 20), reading(interrupter, 20, 50),
-      fitting(interrupter, 50, 100);
+  detail::WorkPart framing(interrupter, 0, 20), reading(interrupter, 20, 45),
+      readingMore(interrupter, 45, 50), fitting(interrupter, 50, 100);
   // What a larger scan shows beyond the labels' domain belongs to grains that nobody knows.
   CoordBBox known = scan.box();
   known.intersect(measured.sample.box);
   const std::vector<Section> sections = sectionsOf(*tree, measured, known, blur.sigma, &framing);
-  const FloatTree::Ptr gray = readAround(sections, scan, &reading);
-  if (const auto domain = storedDomain(labels); domain && !domain->isBox())
-    forgetOutside(*domain->region(), *gray);
-  measured.scan = withGrainsInside(blur, *tree, *gray, known, scan.image->path());
+  const auto domain = storedDomain(labels);
+  const auto grayIn = [&](const std::vector<CoordBBox>& boxes, Interrupter* part) {
+    FloatTree::Ptr gray = readAround(boxes, scan, part);
+    if (domain && !domain->isBox()) forgetOutside(*domain->region(), *gray);
+    return gray;
+  };
+  const auto insideBy = [&](const FloatTree& gray) {
+    return withGrainsInside(blur, *tree, gray, known, scan.image->path());
+  };
+  const FloatTree::Ptr gray = grayIn(boxesOf(sections), &reading);
+  std::optional<ScanBlur> inside = insideBy(*gray);
+  if (!inside) inside = insideBy(*grayIn(boxesOfSome(*tree, known), &readingMore));
+  measured.scan = inside.value_or(blur);
   const NeckMeter meter(*tree, *gray, *measured.scan);
   detail::parallelForEach(sections.size(), kBondsTogether, &fitting, [&](size_t i) {
     measured.bonds[i].neck = meter.measure(measured.bonds[i], sections[i]);

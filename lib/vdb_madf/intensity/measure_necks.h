@@ -31,14 +31,14 @@ namespace vdb_madf {
 ///
 /// Grains may be bright or dark in the scan.
 ///
-/// The scan is read once, in slabs of eight slices. Memory: that, and four bytes for each voxel of
-/// the leaf nodes around bonds.
+/// The scan is read once, twice where no bond tells on which side grains are, in slabs of eight
+/// slices. Memory: that, and four bytes for each voxel of the leaf nodes around bonds.
 /// @param blur what estimateBlur() says of the scan
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line that names the scan, if the domain is unknown or the scan's box
 ///   does not fit (as measureGray()), if voxels are no cubes, or if its grains are elsewhere:
-///   around bonds, of the voxels of grains and of others, less than 65 % in the mean are on their
-///   own side of the middle gray; IoError; Interrupted.
+///   around bonds (around some grains where no bond tells) of the voxels of grains and of others
+///   less than 65 % in the mean are on their own side of the middle gray; IoError; Interrupted.
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
                   Measurements& measured, Interrupter* interrupter = nullptr);
 

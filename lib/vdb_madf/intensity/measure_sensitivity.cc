@@ -106,7 +106,8 @@ Sensitivity boundsOf(const Choices& choices, const SensitivityOptions& options,
   Sensitivity bounds;
   bounds.runs = options.runs;
   bounds.threshold = {choices.selection.low - threshold, choices.selection.low + threshold};
-  bounds.smooth = {std::max(0.0, choices.gray.smooth - smooth), choices.gray.smooth + smooth};
+  bounds.smooth = {std::max(0.0, choices.gray.smooth - smooth),
+                   std::min(kMaxSmoothing, choices.gray.smooth + smooth)};
   bounds.strictness = {choices.segment.merge.strictness - strictness,
                        choices.segment.merge.strictness + strictness};
   const auto gamma = double(std::max<int64_t>(1, choices.segment.gamma));
@@ -130,7 +131,6 @@ Choices choicesOfRun(Choices choices, const Sensitivity& bounds, int run) {
   choices.selection.low = threshold;
   choices.gray.smooth = drawn(bounds.smooth, 3);
   if (choices.gray.smooth < kMinSmoothing) choices.gray.smooth = 0;
-  choices.gray.smooth = std::min(choices.gray.smooth, kMaxSmoothing);
   choices.segment.merge.strictness = drawn(bounds.strictness, 5);
   const VariedRange logarithms{std::log(bounds.gamma.low), std::log(bounds.gamma.high)};
   choices.segment.gamma = std::llround(std::exp(drawn(logarithms, 7)));
@@ -200,19 +200,24 @@ void checkObject(const Int32Grid& labels, const MaskGrid& object, const std::str
       path, 100 * others / std::max(1.0, own)));
 }
 
-/// The numbers of a sample that intervals are told of.
+/// The numbers of a sample that intervals are told of; those of grains where there are any.
 std::vector<MeanInterval> numbersOf(const Measurements& m) {
   double area = 0;
   for (const BondMeasures& bond : m.bonds) area += bond.area;
-  const auto diameter = [&](bool byVolume) { return diameterPercentile(m.grains, 0.5, byVolume); };
-  std::optional<double> meanArea;
+  std::optional<double> byNumber, byVolume, surface, coordination, meanArea;
+  if (!m.grains.empty()) {
+    byNumber = diameterPercentile(m.grains, 0.5, false);
+    byVolume = diameterPercentile(m.grains, 0.5, true);
+    surface = m.sample.specificSurface;
+    coordination = m.sample.meanCoordination;
+  }
   if (!m.bonds.empty()) meanArea = area / double(m.bonds.size());
   return {{"grains", 0, double(m.grains.size()), {}, {}},
-          {"grain_diameter_d50_by_number", 1, diameter(false), {}, {}},
-          {"grain_diameter_d50_by_volume", 1, diameter(true), {}, {}},
+          {"grain_diameter_d50_by_number", 1, byNumber, {}, {}},
+          {"grain_diameter_d50_by_volume", 1, byVolume, {}, {}},
           {"solid_fraction", 0, m.sample.objectFraction, {}, {}},
-          {"specific_surface", -1, m.sample.specificSurface, {}, {}},
-          {"mean_coordination", 0, m.sample.meanCoordination, {}, {}},
+          {"specific_surface", -1, surface, {}, {}},
+          {"mean_coordination", 0, coordination, {}, {}},
           {"bond_area_mean", 2, meanArea, {}, {}}};
 }
 
@@ -239,6 +244,8 @@ bool SensitivityOptions::vary(const std::string& name, double number) {
                                                                : nullptr;
   if (!choice) return false;
   if (!(number >= 0)) throw InvalidInput(name + " must be 0 or more");
+  if (choice == &strictness && number > kMaxStrictness)
+    throw InvalidInput(fmt::format("{} must be at most {}", name, kMaxStrictness));
   *choice = number;
   return true;
 }
@@ -280,12 +287,21 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
     detail::WorkPart part(interrupter, 100 * (run - 1) / options.runs, 100 * run / options.runs);
     const Choices varied = choicesOfRun(choices, sensitivity, run);
     detail::WorkPart reading(&part, 0, 20), segmenting(&part, 20, 70), rest(&part, 70, 100);
-    const MaskGrid::Ptr object = objectOf(varied, &reading);
-    copyProvenance(labels, *object);
-    const Segmentation again = segment(*object, varied.segment, &segmenting);
-    const Measurements there = measure(*again.grain, measuring, &rest);
-    recurrences.add(compare(labels, *again.grain, &rest), there);
-    numbers.push_back(numbersOf(there));
+    try {
+      const MaskGrid::Ptr object = objectOf(varied, &reading);
+      copyProvenance(labels, *object);
+      const Segmentation again = segment(*object, varied.segment, &segmenting);
+      const Measurements there = measure(*again.grain, measuring, &rest);
+      recurrences.add(compare(labels, *again.grain, &rest), there);
+      numbers.push_back(numbersOf(there));
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(
+          fmt::format("run {} (threshold {:g}, smooth {:.3g}, strictness {:.4g}, gamma {}): {}; "
+                      "vary less",
+                      run, varied.selection.low, varied.gray.smooth,
+                      varied.segment.merge.strictness, varied.segment.gamma, error.what()),
+          error.hint());
+    }
   }
   for (size_t i = 0; i < measured.grains.size(); ++i)
     measured.grains[i].recurrence = recurrences.ofGrain(i, options.runs);

@@ -26,7 +26,7 @@ struct SensitivityOptions {
 
   /// Says how far one of these is varied: "threshold", "smooth", "strictness" or "gamma".
   /// @return false if there is no such choice
-  /// @throw InvalidInput unless the number is 0 or more
+  /// @throw InvalidInput unless the number is 0 or more, of the strictness up to kMaxStrictness
   bool vary(const std::string& name, double number);
 };
 
