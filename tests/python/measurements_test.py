@@ -307,6 +307,10 @@ def test_necks_in_a_gray_scan(command, tmp_path):
             madf.measure(labels, **arguments)
     with pytest.raises(ValueError, match="its edges tell no blur"):
         madf.measure(labels, gray=(values > 2000).astype(np.uint8))
+    part = np.asarray(labels)[:30, :30, :40].copy()  # does not say where in the scan it lies
+    for arguments in (dict(gray=values), dict(phases=(values > 2000).astype(np.uint8))):
+        with pytest.raises(ValueError, match="do not say where in it they were cropped"):
+            madf.measure(part, **arguments)
     noise = np.random.default_rng(2).integers(0, 4000, (20, 20, 20)).astype(np.uint16)
     labels = madf.segment(noise, threshold=2000.0).labels
     with pytest.warns(UserWarning, match="tell no blur: necks are not measured"):

@@ -150,9 +150,14 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   CHECK(bench.run("measure own.vdb out --intensity other31.tif")
             .err.find("other31.tif: is larger than the volume of the labels") != std::string::npos);
   bench.mustRun("convert own.vdb part.tif --labels --crop 5,5,5:24,24,24 -q");
-  refuses(bench, kFailed, "measure part.tif out --intensity other31.tif",
-          {"other31.tif: has 31x31x31 voxels, and the labels, of 20x20x20 voxels, do not say where "
-           "in it they were cropped: give the scan cropped as they were"});
+  for (const std::string verb :
+       {"measure part.tif out --intensity other31.tif", "measure part.tif out --gray other31.tif",
+        "measure part.tif out --phases other31.tif --bridges b.csv",
+        "render part.tif out.png --overlay other31.tif",
+        "report part.tif out.html --overlay other31.tif"})
+    refuses(bench, kFailed, verb,
+            {"other31.tif: has 31x31x31 voxels, and the labels, of 20x20x20 voxels, do not say "
+             "where in it they were cropped: give the scan cropped as they were"});
   bench.mustRun("convert balls.vdb coarse.tif --grid truth --type uint8 --voxel-size 20um");
   CHECK(bench.run(measure + "--intensity coarse.tif").err.find("voxels of") == std::string::npos);
   bench.mustRun("convert balls.vdb fine.vdb --grid truth --voxel-size 8.5um");
@@ -181,6 +186,8 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   refuses(bench, kWrongUsage, again + "9 --vary fog:1", {"threshold:T,smooth:S"});
   refuses(bench, kWrongUsage, again + "9 --vary smooth", {"--vary smooth"});
   refuses(bench, kWrongUsage, again + "9 --vary smooth:-1", {"0 or more"});
+  refuses(bench, kWrongUsage, again + "9 --vary strictness:1e6", {"1e6", "at most 200000"});
+  refuses(bench, kFailed, "measure nosuch.slabs out --stability", {"nosuch.slabs", "cannot be"});
 }
 
 TEST_CASE("cli: measure writes curves of sizes, and their distance from another", "[cli]") {
@@ -197,6 +204,11 @@ TEST_CASE("cli: measure writes curves of sizes, and their distance from another"
   CHECK(std::count(curve.begin(), curve.end(), '\n') == 102);
   CHECK(Json::parse(bench.bytes("out/sample.json")).at("size_curve_rms_percent").size() == 4);
   CHECK(bench.mustRun("measure balls.vdb out --sample S --size-curve -") == curve);
+  bench.write("full.raw", std::string(125, '\1'));  // its grain touches all faces
+  CHECK(bench
+            .mustRun("measure full.raw out --dims 5x5x5 --type uint8 --voxel-size 20um "
+                     "--edge-weights --size-reference sieves.csv")
+            .find("  feret_min           unknown: no grain counts") != std::string::npos);
 
   refuses(bench, kWrongUsage, "measure balls.vdb out --size-curve curve.txt", {"must be .csv"});
   refuses(bench, kWrongUsage, "measure balls.vdb out --size-curve a.csv --size-reference a.csv",

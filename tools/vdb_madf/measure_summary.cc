@@ -4,6 +4,7 @@
 #include "measure_summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "command.h"
@@ -102,7 +103,10 @@ void printOnDemand(const Measurements& m, double length, const std::string& unit
                 m.binder->volume > 0 ? 100 * m.binder->looseVolume / m.binder->volume : 0.0);
   if (m.crossings) printCrossings(*m.crossings);
   for (const SizeDeviation& deviation : m.sizeDeviations)
-    std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
+    if (std::isnan(deviation.percent))
+      std::printf("  %-20sunknown: no grain counts\n", deviation.size.c_str());
+    else
+      std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
   printIntervals(m.intervals, length, unit);
   if (m.sensitivity) printSensitivity(m, length, unit);
   for (const SizeBias& bias : sizeBiases(m))

@@ -111,12 +111,16 @@ bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
 
 }  // namespace
 
-void requirePlace(const GrayScan& scan, const openvdb::GridBase& about) {
-  if (grainCount(about) || !goesOn(scan.box(), about)) return;
-  throw InvalidInput(scan.image->path() + ": has " + detail::sizeAndPlace(scan.box()) +
-                     ", and the labels, of " + detail::sizeAndPlace(boxOf(about)) +
+void requirePlace(const std::string& path, const CoordBBox& box, const openvdb::GridBase& about) {
+  if (grainCount(about) || !goesOn(box, about)) return;
+  throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
+                     detail::sizeAndPlace(boxOf(about)) +
                      ", do not say where in it they were cropped: give the scan cropped as they "
                      "were");
+}
+
+void requirePlace(const GrayScan& scan, const openvdb::GridBase& about) {
+  requirePlace(scan.image->path(), scan.box(), about);
 }
 
 std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,

@@ -44,6 +44,7 @@ std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about);
 /// Labels of an image, of an array or of another program do not say where in a larger scan they
 /// lie.
 /// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond such labels
+void requirePlace(const std::string& path, const CoordBBox& box, const openvdb::GridBase& about);
 void requirePlace(const GrayScan& scan, const openvdb::GridBase& about);
 
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
