@@ -179,6 +179,12 @@ TEST_CASE("clumps: a ball whose center lies in a cavity is that of the grain aro
   REQUIRE(made[1].balls.size() == 1);  // at (-1, 0, 0), as near as (0, 0, 1)
   CHECK(made[1].balls[0].center == Coord(0));
   CHECK(made[1].uncovered == 0);
+  // (-5, 0, 0) and (3, 4, 0) are equally near.
+  const auto tie =
+      clumps(*labelGrid({{{-5, 0, 0}, 1}, {{3, 4, 0}, 2}}), *labelGrid({{Coord(0), 26}}), {10, 0});
+  REQUIRE(tie.size() == 2);
+  CHECK(tie[0].balls.size() == 1);
+  CHECK(tie[1].balls.empty());
 }
 
 TEST_CASE("clumps: same for any number of threads; no balls, no labels, wrong options",

@@ -128,9 +128,10 @@ int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels
                      const Clump::Ball& ball, const VoxelWeights& weights) {
   constexpr int kMaxReach = 16;  // a cavity is small
   int32_t label = 0;
+  Coord where;
   int64_t nearest = int64_t(ball.squaredRadius);
   for (int reach = 1;
-       reach <= kMaxReach && detail::squaredAlong(int64_t(reach), weights.least()) < nearest;
+       reach <= kMaxReach && detail::squaredAlong(int64_t(reach), weights.least()) <= nearest;
        ++reach) {
     CoordBBox cube(ball.center, ball.center);
     cube.expand(reach);
@@ -139,8 +140,10 @@ int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels
       if (std::max({std::abs(away.x()), std::abs(away.y()), std::abs(away.z())}) != reach) continue;
       const int64_t square = detail::squaredBetween(*p, ball.center, weights);
       int32_t value = 0;
-      if (square >= nearest || !labels.probeValue(*p, value) || value <= 0) continue;
+      const bool isFarther = square > nearest || (square == nearest && (!label || where < *p));
+      if (isFarther || !labels.probeValue(*p, value) || value <= 0) continue;
       nearest = square;
+      where = *p;
       label = value;
     }
   }
