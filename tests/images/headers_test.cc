@@ -236,6 +236,19 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
     std::memcpy(&value, &values[4 * i], 4);
     REQUIRE(value == float(stored) / 2 - 2);
   }
+  // Ids above 2^24 stay apart.
+  layout.slope = 1;
+  layout.intercept = -1;
+  layout.type = 8;
+  const std::array<int32_t, 2> ids{20000000, 20000002};
+  std::string large(4 * voxels(kHeaderSize), '\0');
+  std::memcpy(large.data(), ids.data(), sizeof ids);
+  const std::string apart = readAll(*open(large), 2);
+  REQUIRE(apart.size() == 8 * voxels(kHeaderSize));
+  std::array<double, 2> found{};
+  std::memcpy(found.data(), apart.data(), sizeof found);
+  CHECK(found == std::array<double, 2>{19999999, 20000001});
+  layout.type = 4;
   layout.slope = 0;
   layout.edge = {3, 3, 3};
   for (const auto& [units, metres] : {std::pair(0, 0.0), {1, 3.0}, {2, 3e-3}, {3, 3e-6}}) {

@@ -132,24 +132,34 @@ class ScaledReader : public ImageReader {
     path_ = stored_->path();
     files_ = stored_->files();
     info_ = stored_->info();
-    info_.type = SampleType::float32;
+    const SampleType type = info_.type;
+    const bool isWide = type == SampleType::int32 || type == SampleType::uint32 ||
+                        type == SampleType::float64;  // labels would merge in floats
+    info_.type = isWide ? SampleType::float64 : SampleType::float32;
   }
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
+    if (info_.type == SampleType::float64)
+      scale(first, count, static_cast<double*>(samples));
+    else
+      scale(first, count, static_cast<float*>(samples));
+  }
+
+ private:
+  template <typename Sample>
+  void scale(int first, int count, Sample* to) {
     const size_t slice = size_t(info_.size.x) * size_t(info_.size.y);
-    auto* to = static_cast<float*>(samples);
     std::vector<char> buffer(size_t(sliceBytes(stored_->info())));
     for (int z = first; z < first + count; ++z, to += slice) {
       stored_->read(z, 1, buffer.data());
       withSampleType(stored_->info().type, [&](auto type) {
         const auto* values = reinterpret_cast<const decltype(type)*>(buffer.data());
-        for (size_t i = 0; i < slice; ++i) to[i] = float(slope_ * double(values[i]) + intercept_);
+        for (size_t i = 0; i < slice; ++i) to[i] = Sample(slope_ * double(values[i]) + intercept_);
       });
     }
   }
 
- private:
   std::unique_ptr<ImageReader> stored_;
   double slope_, intercept_;
 };
