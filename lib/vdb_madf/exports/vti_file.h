@@ -16,7 +16,7 @@ namespace vdb_madf {
 /// position of its voxel, so the origin, a corner of cells, lies half a voxel below that of
 /// (0,0,0). Memory: eight slices; compressed (zlib): the compressed file and eight slices per
 /// thread.
-/// @throw InvalidInput if the voxels are not cubes along the axes or the box is empty; IoError;
+/// @throw InvalidInput if the voxels are not boxes along the axes or the box is empty; IoError;
 ///   Interrupted.
 void writeVti(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
               bool compressed = false, Interrupter* interrupter = nullptr);

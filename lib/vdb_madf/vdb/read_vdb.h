@@ -25,9 +25,8 @@ struct VdbReadOptions {
   /// what is wrong within them is not seen; a tree that a wanted grid shares with another is read,
   /// and so is the region that is its domain.
   std::function<bool(const openvdb::GridBase&)> wanted;
-  /// Reads grids whatever the shape of their voxels. Everything here measures in cubes: otherwise a
-  /// wanted grid is refused whose voxels have edges that differ by more than 0.1 % in the world, or
-  /// are turned or sheared. (Readers of images refuse unequal spacings likewise.)
+  /// Reads grids whatever the shape of their voxels. Otherwise a wanted grid is refused whose voxels
+  /// are turned or sheared; their edges may differ from axis to axis.
   bool anyVoxelShape = false;
 };
 
@@ -40,8 +39,8 @@ struct VdbReadOptions {
 /// bytes. A file that another program has written again has another UUID, and is not.
 /// A folder of slabs (slab_folder.h) is one such volume; its grids have to fit in memory together.
 /// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB,
-///   has voxels that are no cubes, names a region that it does not hold, or is not what its digest
-///   says; Interrupted.
+///   has voxels that are turned or sheared, names a region that it does not hold, or is not what
+///   its digest says; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);

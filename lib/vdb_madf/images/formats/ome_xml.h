@@ -27,7 +27,7 @@ class OmePixels {
   /// SizeZ, SizeC, SizeT; 1 if it is not a number.
   int64_t size(const std::string& axis) const;
   /// PhysicalSizeX, Y and Z with their units (micrometers by default). Nothing without all three.
-  /// @throw IoError that names the path if they differ or are no plausible lengths
+  /// @throw IoError that names the path if they are no plausible lengths
   std::optional<VoxelSize> voxelSize(const std::string& path) const;
 
  private:
