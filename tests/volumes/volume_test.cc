@@ -153,6 +153,28 @@ TEST_CASE("volume: domain and voxel size of the options replace the file's", "[v
         22 * 22 * 22 - int64_t(labels->activeVoxelCount()));
 }
 
+TEST_CASE("volume: a voxel size keeps the place, and a domain has to hold the labels", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  labels->transform().preTranslate(openvdb::Vec3d(0.5, 0, -100));  // as of reduced labels
+  writeVdb(folder / "a.vdb", {labels});
+  VolumeOptions options;
+  options.voxelSize = VoxelSize{2e-5};
+  options.selection = Selection::threshold(1);
+  const openvdb::Vec3d place(0.01, 0, -2);  // mm
+  CHECK((loadLabels(folder / "a.vdb", options)->indexToWorld(Coord(0)) - place).length() < 1e-9);
+  CHECK((loadObject(folder / "a.vdb", options)->indexToWorld(Coord(0)) - place).length() < 1e-9);
+  overrideFile(*labels, "a.vdb", options);
+  CHECK((labels->indexToWorld(Coord(0)) - place).length() < 1e-9);
+
+  options.domain = CoordBBox(Coord(0), Coord(3));
+  const auto refuses = Contains("a.vdb: the object leaves the domain");
+  CHECK_THROWS_WITH(loadLabels(folder / "a.vdb", options), refuses);
+  CHECK_THROWS_WITH(overrideFile(*labels, "a.vdb", options), refuses);
+  options.region.crop = options.domain;
+  CHECK(loadLabels(folder / "a.vdb", options)->activeVoxelCount() > 0);
+}
+
 TEST_CASE("volume: the grid is the named one, a usual one or the only one", "[volume]") {
   const ScratchFolder folder;
   const Int32Grid::Ptr labels = labelsOfSample();

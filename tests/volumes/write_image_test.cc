@@ -96,6 +96,10 @@ template <typename Value>
 void checkBoxes(const ScratchFolder& folder) {
   const auto grid = randomGrid<Value>(11, std::is_same_v<Value, openvdb::ValueMask> ? 0 : 1);
   const auto voxels = grid->getConstAccessor();
+  const auto valueAt = [&](const Coord& p) {
+    const bool counts = std::is_floating_point_v<Value> || voxels.isValueOn(p);
+    return counts ? double(voxels.getValue(p)) : 0;
+  };
   for (const CoordBBox& box :
        {CoordBBox(Coord(-21, -11, -13), Coord(20, 31, 18)), CoordBBox(Coord(0), Coord(7)),
         CoordBBox(Coord(-3, 5, -9), Coord(-3, 5, 13)), CoordBBox(Coord(-5, -5, 6), Coord(20, 3, 9)),
@@ -111,7 +115,7 @@ void checkBoxes(const ScratchFolder& folder) {
       for (int z = box.min().z(); z <= box.max().z(); ++z)
         for (int y = box.min().y(); y <= box.max().y(); ++y)
           for (int x = box.min().x(); x <= box.max().x(); ++x)
-            wrong += numbers[i++] != double(voxels.getValue(Coord(x, y, z)));
+            wrong += numbers[i++] != valueAt(Coord(x, y, z));
       REQUIRE(wrong == 0);
     }
 }
@@ -214,16 +218,52 @@ TEST_CASE("image_write: labels take the smallest unsigned type that programs exp
   CHECK(labelType(*grid) == SampleType::uint16);
   grid->tree().setValue(Coord(1, 2, 3), 65535);
   CHECK(labelType(*grid) == SampleType::uint16);
-  grid->tree().setValueOff(Coord(100, 2, 3), 65536);  // inactive values are written, too
+  grid->tree().setValueOff(Coord(100, 2, 3), -5);  // inactive values are none
+  CHECK(labelType(*grid) == SampleType::uint16);
+  grid->tree().setValue(Coord(101, 2, 3), 65536);
   CHECK(labelType(*grid) == SampleType::uint32);
   grid->tree().setValue(Coord(-1000, 2, 3), -1);
   CHECK(labelType(*grid) == SampleType::int32);
   const auto tiles = Int32Grid::create(0);
   tiles->tree().addTile(2, Coord(0), 70000, true);
   CHECK(labelType(*tiles) == SampleType::uint32);
-  tiles->tree().addTile(1, Coord(1024, 0, 0), -5, false);
+  tiles->tree().addTile(1, Coord(1024, 0, 0), -5, true);
   CHECK(labelType(*tiles) == SampleType::int32);
-  CHECK(labelType(*Int32Grid::create(-1)) == SampleType::int32);
+  CHECK(labelType(*Int32Grid::create(-1)) == SampleType::uint16);
+}
+
+TEST_CASE("image_write: labels and masks that leave their domain are refused", "[image_write]") {
+  const auto check = [](auto grid) {
+    grid->tree().setValueOn(Coord(0, 0, 3));
+    grid->tree().setValueOn(Coord(15, 7, 7));
+    CHECK(writtenBox(*grid) == CoordBBox(Coord(0, 0, 3), Coord(15, 7, 7)));
+    setDomain(*grid, CoordBBox(Coord(0), Coord(15)));
+    CHECK(writtenBox(*grid) == CoordBBox(Coord(0), Coord(15)));
+    setDomain(*grid, CoordBBox(Coord(0), Coord(9)));
+    CHECK_THROWS_WITH(writtenBox(*grid), Contains("leaves the domain"));
+  };
+  check(Int32Grid::create(1));
+  check(MaskGrid::create());
+  const auto band = FloatGrid::create(1);  // of a level set, which may reach beyond
+  band->tree().setValueOn(Coord(20));
+  setDomain(*band, CoordBBox(Coord(0), Coord(9)));
+  CHECK(writtenBox(*band) == CoordBBox(Coord(0), Coord(9)));
+
+  const ScratchFolder folder;
+  LabelSlabs slabs;
+  const auto about = Int32Grid::create(0);
+  setDomain(*about, CoordBBox(Coord(0), Coord(9)));
+  slabs.about = about;
+  slabs.cuts = {0, 8};
+  slabs.read = [](size_t, Interrupter*) {
+    const auto slab = Int32Grid::create(0);
+    slab->tree().setValue(Coord(12, 0, 0), 1);
+    return slab;
+  };
+  CHECK_THROWS_WITH(
+      writeImage(folder / "a.raw", slabs, CoordBBox(Coord(0), Coord(9)), SampleType::int32),
+      Contains("leaves the domain"));
+  CHECK(folder.fileCount() == 0);
 }
 
 TEST_CASE("image_write: what a file does not hold is said", "[image_write]") {
@@ -240,6 +280,9 @@ TEST_CASE("image_write: what a file does not hold is said", "[image_write]") {
   CHECK(lossesOf("a.h5", *grid) ==
         std::vector<std::string>{"a.h5: the center of its first voxel is at 0.005,0.005,0.01 mm, "
                                  "and where it is read at 0 (a .vdb keeps the place)"});
+  CHECK(lostEdges("a.mha", true, VoxelSize(2e-3)).empty());
+  CHECK(lostEdges("a.nrrd", true, VoxelSize(1e-3)).empty());
+  CHECK_THAT(lostEdges("a.mha", true, VoxelSize(1e-3)), Contains("1 mm"));
   setBoundary(*grid, Boundary::open);
   CHECK(lossesOf("a.mha", *grid).empty());
   setBoundary(*grid, Boundary::closed);

@@ -45,7 +45,7 @@ void writeMask(const ExportArguments& o, const CoordBBox& box, const LabelSlabs&
 }  // namespace
 
 void exportPalabos(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
-  const CoordBBox box = boxOf(labels);
+  const CoordBBox box = writtenBox(labels);
   writePalabos(o.out, labels, box, common.progress);
   const auto domain = storedDomain(labels);
   say(o, common,
@@ -55,7 +55,7 @@ void exportPalabos(const ExportArguments& o, const Common& common, const Int32Gr
 }
 
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
-  const CoordBBox box = boxOf(labels);
+  const CoordBBox box = writtenBox(labels);
   writeVti(o.out, labels, box, o.compress, common.progress);
   note({lostRegion(o.out, labels)}, common);
   say(o, common, "cell data grain_id, " + sizeText(box));
@@ -64,7 +64,7 @@ void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& 
 template <typename Labels>
 void exportMask(const ExportArguments& o, const Common& common, const Labels& labels) {
   const Int32Grid& about = aboutOf(labels);
-  const CoordBBox box = boxOf(about);
+  const CoordBBox box = writtenBox(about);
   writeMask(o, box, labels, common.progress);
   note(lossesOf(o.out, about), common);
   say(o, common, "1 = grain, 0 = background, " + sizeText(box) + " of type uint8, x fastest");
@@ -84,7 +84,7 @@ void exportNetwork(const ExportArguments& o, const Common& common, const Labels&
 
 template <typename Labels>
 void exportZarr(const ExportArguments& o, const Common& common, const Labels& labels) {
-  const CoordBBox box = boxOf(aboutOf(labels));
+  const CoordBBox box = writtenBox(aboutOf(labels));
   OmeZarrOptions options;
   options.version = omeVersionOf(o.ome);
   options.measure = o.measure;

@@ -110,7 +110,7 @@ void checkVolumeEnding(const std::string& path) {
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common) {
-  const CoordBBox box = boxOf(grid);
+  const CoordBBox box = writtenBox(grid);
   if (!storedDomain(grid)) {
     if (grid.activeVoxelCount() == 0) refuseEmpty(grid, source);
     tellBox(path, box, common);

@@ -14,6 +14,10 @@ namespace vdb_madf {
 std::string lostEdges(const std::string& path, bool areCubes,
                       const std::optional<VoxelSize>& size) {
   const std::string ending = fileEnding(path);
+  if ((ending == ".mha" || ending == ".mhd") && size && size->isCube() && size->edge() == 1e-3)
+    return path +
+           ": voxels of 1 mm are read as of unknown size: give it again where it is read "
+           "(--voxel-size)";
   if (areCubes || (size && ending != ".raw" && ending != ".npy")) return "";
   return path +
          ": does not say that its voxels are no cubes: give their edges again where it is read "

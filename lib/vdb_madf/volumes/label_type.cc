@@ -14,23 +14,21 @@
 namespace vdb_madf {
 
 SampleType labelType(const Int32Grid& grid) {
-  using Leaf = Int32Tree::LeafNodeType;
   const auto leaves = detail::leavesOf(grid.tree());
-  int32_t min = grid.background(), max = min;
+  int32_t min = 0, max = 0;  // of inactive voxels
   std::mutex mutex;
   detail::parallelFor(leaves.size(), detail::kLeafGrain, nullptr, [&](size_t begin, size_t end) {
     int32_t low = std::numeric_limits<int32_t>::max(), high = std::numeric_limits<int32_t>::min();
-    for (size_t i = begin; i < end; ++i) {
-      const int32_t* values = leaves[i]->buffer().data();
-      const auto [lowest, highest] = std::minmax_element(values, values + Leaf::SIZE);
-      low = std::min(low, *lowest);
-      high = std::max(high, *highest);
-    }
+    for (size_t i = begin; i < end; ++i)
+      for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) {
+        low = std::min(low, *voxel);
+        high = std::max(high, *voxel);
+      }
     const std::lock_guard<std::mutex> lock(mutex);
     min = std::min(min, low);
     max = std::max(max, high);
   });
-  auto tile = grid.tree().cbeginValueAll();
+  auto tile = grid.tree().cbeginValueOn();
   tile.setMaxDepth(tile.getLeafDepth() - 1);
   for (; tile; ++tile) {
     min = std::min(min, *tile);

@@ -92,7 +92,7 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
                : labelsOfImage(
                      path, [&] { return openVolumeImage(path, options); }, options, interrupter);
   });
-  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
+  detail::giveVoxelSize(*labels, options);
   return labels;
 }
 
@@ -121,7 +121,7 @@ Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options,
   const Int32Grid::Ptr labels = detail::naming(path, options.region.mask, [&] {
     return labelsOfImage(path, checked, options, interrupter);
   });
-  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
+  detail::giveVoxelSize(*labels, options);
   return labels;
 }
 

@@ -147,7 +147,7 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
 }
 
 MaskGrid::Ptr finishedObject(MaskGrid::Ptr object, const VolumeOptions& options) {
-  if (options.voxelSize) setVoxelSize(*object, options.voxelSize);
+  detail::giveVoxelSize(*object, options);
   object->setName("object");
   return object;
 }

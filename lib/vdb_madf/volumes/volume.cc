@@ -64,8 +64,8 @@ std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
 void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
   detail::noteVoxelSize(path, storedVoxelSize(grid), options);
   detail::noteProportions(path, grid, options);
-  detail::giveDomain(grid, path, options);
-  if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
+  detail::naming(path, "", [&] { detail::giveDomain(grid, path, options); });
+  detail::giveVoxelSize(grid, options);
 }
 
 std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,

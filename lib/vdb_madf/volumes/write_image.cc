@@ -13,6 +13,7 @@
 #include "vdb_madf/images/shared_image.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/volumes/detail/sample_slabs.h"
+#include "vdb_madf/volumes/detail/volume_notes.h"
 
 namespace vdb_madf {
 
@@ -62,12 +63,21 @@ void writeSlabs(const std::string& path, const LabelSlabs& labels, size_t begin,
     writeSlices(path, grid, box, first, last, type, interrupter, writer);
   };
   if (begin == 0) write(nothing, box.min().z(), labels.cuts.front());
-  for (size_t s = begin; s < end; ++s)
-    write(*labels.read(s, interrupter), labels.cuts[s], labels.cuts[s + 1]);
+  const auto domain = storedDomain(*labels.about);
+  for (size_t s = begin; s < end; ++s) {
+    const Int32Grid::Ptr slab = labels.read(s, interrupter);
+    if (domain) detail::checkWithinDomain(*slab, *domain);
+    write(*slab, labels.cuts[s], labels.cuts[s + 1]);
+  }
   if (end == labels.slabCount()) write(nothing, labels.cuts.back(), box.max().z() + 1);
 }
 
 }  // namespace
+
+CoordBBox writtenBox(const openvdb::GridBase& grid) {
+  if (const auto domain = storedDomain(grid)) detail::checkWithinDomain(grid, *domain);
+  return boxOf(grid);
+}
 
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter) {

@@ -28,6 +28,14 @@ struct StoredValue {
   }
 };
 
+/// What an active voxel holds; 0 of others, as readers of masks and labels have it.
+struct ActiveValue {
+  template <typename T>
+  T operator()(T value, bool active) const {
+    return active ? value : T(0);
+  }
+};
+
 /// The values of a tree over a box, slab by slab: one per voxel, x fastest. A voxel's value is
 /// ValueOf()(value, active); what lies outside of tiles and leaves is inactive background.
 template <typename Tree, typename ValueOf = StoredValue>

@@ -16,11 +16,6 @@ namespace {
 
 constexpr int kSlices = 8;
 
-/// What an active voxel holds; 0 of others.
-struct ActiveLabel {
-  int32_t operator()(int32_t value, bool active) const { return active ? value : 0; }
-};
-
 /// Places in `ids` from 1 on; neighbors mostly hold the same label.
 class Places {
  public:
@@ -44,7 +39,7 @@ std::string packLabels(const Int32Grid& labels, const CoordBBox& box,
                        const std::vector<int32_t>& ids, Interrupter* interrupter) {
   PackedBytes packed;
   if (box.empty()) return packed.text();
-  const GridSlabs<Int32Tree, ActiveLabel> slabs(labels.tree(), box);
+  const GridSlabs<Int32Tree, ActiveValue> slabs(labels.tree(), box);
   Places places(ids);
   uint64_t run = 0;
   uint32_t held = 0;

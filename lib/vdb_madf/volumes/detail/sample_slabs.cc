@@ -27,7 +27,11 @@ void forEachSampleSlab(const std::string& name, const openvdb::GridBase& grid, c
   const size_t slice = size_t(box.dim().x()) * size_t(box.dim().y());
   const size_t slab = slice * size_t(std::min(kSlab, box.dim().z()));
   grid.apply<NumberGrids>([&](const auto& numbers) {
-    using Slabs = GridSlabs<std::decay_t<decltype(numbers.tree())>>;
+    using Tree = std::decay_t<decltype(numbers.tree())>;
+    // The interior of a level set is inactive.
+    using ValueOf = std::conditional_t<std::is_floating_point_v<typename Tree::ValueType>,
+                                       StoredValue, ActiveValue>;
+    using Slabs = GridSlabs<Tree, ValueOf>;
     using Value = typename Slabs::Value;
     const Slabs slabs(numbers.tree(), box);
     std::vector<Value> values(slab);

@@ -12,7 +12,10 @@
 #include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf::detail {
 
@@ -74,7 +77,7 @@ void noteProportions(const std::string& path, const openvdb::GridBase& grid,
   std::array<double, 3> ratios;
   for (size_t axis = 0; axis < 3; ++axis)
     ratios[axis] = options.voxelSize->edges()[axis] / own[int(axis)];
-  if (areEdgesOfCube(ratios)) return;
+  if (vdb_madf::areEdgesOfCube(ratios)) return;
   options.note(path +
                    ": was segmented in voxels of other proportions, which give other grains: "
                    "segment the object anew",
@@ -99,6 +102,13 @@ void noteBeyond(const std::string& path, const std::string& what, const CoordBBo
                  NoteAbout::file);
 }
 
+void checkWithinDomain(const openvdb::GridBase& grid, const Domain& domain) {
+  if (!grid.isType<Int32Grid>() && !grid.isType<BoolGrid>() && !grid.isType<MaskGrid>()) return;
+  const CoordBBox active = grid.evalActiveVoxelBoundingBox();
+  if (!active.empty() && !domain.box().isInside(active))
+    checkWithin(objectMask(grid)->evalActiveVoxelBoundingBox(), domain);
+}
+
 void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
   if (!options.domain) return;
   const auto own = storedDomain(grid);
@@ -111,7 +121,16 @@ void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOp
   } else if (own) {
     noteBeyond(path, "domain", *options.domain, own->box(), "counts as scanned", options);
   }
+  if (!options.region.any()) checkWithinDomain(grid, *options.domain);
   setDomain(grid, *options.domain);
+}
+
+void giveVoxelSize(openvdb::GridBase& grid, const VolumeOptions& options) {
+  if (!options.voxelSize) return;
+  const auto edges = edgesAlongAxes(grid.transform());
+  const openvdb::Vec3d origin = grid.indexToWorld(openvdb::Vec3d(0));
+  setVoxelSize(grid, options.voxelSize);
+  if (edges && origin != openvdb::Vec3d(0)) grid.transform().preTranslate(origin / *edges);
 }
 
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,

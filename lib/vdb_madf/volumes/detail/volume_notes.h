@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/volumes/volume.h"
 
 namespace vdb_madf::detail {
@@ -31,9 +32,17 @@ void noteProportions(const std::string& path, const openvdb::GridBase& grid,
 void noteBeyond(const std::string& path, const std::string& what, const CoordBBox& box,
                 const CoordBBox& scan, const std::string& meaning, const VolumeOptions& options);
 
+/// Refuses labels and masks with voxels outside of a domain, which files without such voxels would
+/// lose. @throw InvalidInput
+void checkWithinDomain(const openvdb::GridBase& grid, const Domain& domain);
+
 /// Gives a grid the domain of the options, if they have one; notes where it reaches beyond its own,
-/// and that a region goes.
+/// and that a region goes. @throw InvalidInput if it does not hold the grid, and nothing is cropped
 void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options);
+
+/// Gives a grid the voxel size of the options, if they have one. Its first voxel stays where it is,
+/// in edges of voxels: that of reduced labels, or of a part of a scan.
+void giveVoxelSize(openvdb::GridBase& grid, const VolumeOptions& options);
 
 /// Notes how many voxels of a kind lie outside of the region, if any do.
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
