@@ -314,6 +314,11 @@ TEST_CASE("mesh_file: nothing to write, and endings nobody knows", "[mesh_file]"
   CHECK_THROWS_AS(writeMesh(folder / "no/m.ply", mesh, optionsOf(*grid)), IoError);
   // Also the materials of the .obj.
   CHECK(folder.fileCount() == 6);
+  CHECK(worldUnit(*grid).empty());  // voxels
+  setProportions(*grid, {0.01, 0.01, 0.01});
+  CHECK(worldUnit(*grid) == "an unknown unit");
+  setVoxelSize(*grid, VoxelSize(1e-5));
+  CHECK(worldUnit(*grid) == "mm");
   CHECK(isMeshEnding("a.PLY"));
   CHECK(!isMeshEnding("a.vdb"));
 }

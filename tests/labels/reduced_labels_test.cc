@@ -90,6 +90,20 @@ TEST_CASE("reduced_labels: a region keeps the coarse voxels that half lie in it"
   }
 }
 
+TEST_CASE("reduced_labels: places are in the unit of the coarse voxels", "[reduced_labels]") {
+  const auto labels = labelGrid({{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{0, 1, 0}, 1}, {{0, 0, 1}, 1}});
+  setVoxelSize(*labels, VoxelSize(1e-8));  // of um; below 20 nm
+  setDomain(*labels, CoordBBox(Coord(0), Coord(1)));
+  const auto reduced = reduceLabels(*labels, 2);
+  REQUIRE(storedVoxelSize(*reduced)->unit() == "mm");
+  CHECK((*reduced)["madf_length_unit"]->str() == "mm");
+  CHECK(reduced->voxelSize().x() == Approx(2e-5));
+  CHECK(reduced->indexToWorld(Coord(0)).z() == Approx(5e-6));
+  const auto fine = transformInUnitOf(*labels, *reduced);
+  CHECK(fine->voxelSize().x() == Approx(0.02));
+  CHECK(fine->indexToWorld(Coord(0)).z() == Approx(0.005));
+}
+
 TEST_CASE("label_blocks: the voxels of each label are counted", "[label_blocks]") {
   const LabelMap voxels = randomLabels(2, Coord(-6, 3, -9), 19, 5, 60);
   std::map<int32_t, int64_t> expected;

@@ -88,6 +88,18 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
   CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
 }
 
+TEST_CASE("cli: reduced labels of voxels below 20 nm are in the unit that is said", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 40 --count 5 --radius 6:9 --voxel-size 10nm");
+  bench.mustRun("segment s.vdb g.vdb");
+  bench.mustRun("export g.vdb l.vdb --as lod");
+  bench.mustRun("convert l.vdb l.nrrd");
+  CHECK(bench.bytes("l.nrrd").find("space origin: (5e-06,5e-06,5e-06)") != std::string::npos);
+  CHECK(bench.mustRun("export l.vdb l.ply").find("lengths in mm") != std::string::npos);
+  // A mesh is in the unit of its labels, reduced or not.
+  CHECK(bench.mustRun("export g.vdb m.ply --reduce 2").find("lengths in um") != std::string::npos);
+}
+
 TEST_CASE("cli: OME-Zarr is the same for any number of threads, and read back", "[cli]") {
   const Bench bench;
   makeLabels(bench);

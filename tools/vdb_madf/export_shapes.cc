@@ -34,11 +34,6 @@ namespace vdb_madf::tools {
 
 namespace {
 
-std::string unitOf(const openvdb::GridBase& grid) {
-  const auto size = storedVoxelSize(grid);
-  return size ? size->unit() : std::string();
-}
-
 /// Says how many of the grains have no voxel any more where labels were reduced.
 void noteVanished(const ExportArguments& o, const Common& common, size_t grains,
                   const Int32Grid& reduced) {
@@ -108,8 +103,8 @@ void exportMesh(const ExportArguments& o, const Common& common, const Labels& la
   file.colors = grainColors(labels, common.progress);
   const Int32Grid::ConstPtr meshed =
       meshedLabels(o, common, labels, factor, file.colors.labels.size());
-  file.transform = meshed->constTransformPtr();
-  file.lengthUnit = unitOf(aboutOf(labels));
+  file.transform = transformInUnitOf(aboutOf(labels), *meshed);
+  file.lengthUnit = worldUnit(aboutOf(labels));
   file.shadeSmooth = o.smoothing > 0;
   if (isGlb(o.out) && options.triangles == 0)
     checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);

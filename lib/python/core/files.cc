@@ -18,6 +18,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
@@ -85,9 +86,8 @@ void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& mesh
   write(call, [&](Interrupter* interrupter) {
     const GrainMeshOptions shape = meshOptions(smoothing, triangles);
     MeshFileOptions options;
-    options.transform = meshed->constTransformPtr();
-    const auto size = storedVoxelSize(*whole);
-    options.lengthUnit = size ? size->unit() : "";
+    options.transform = transformInUnitOf(asLabels(*whole), asLabels(*meshed));
+    options.lengthUnit = worldUnit(*whole);
     options.shadeSmooth = smoothing > 0;
     if (isGlb(path) && !triangles)
       checkMeshRoom(path, countTriangles(asLabels(*meshed), interrupter), options);

@@ -22,6 +22,7 @@
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/written_together.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf {
 
@@ -166,6 +167,11 @@ void checkNoOtherGrains(const std::string& folder, const std::vector<std::string
 }
 
 }  // namespace
+
+std::string worldUnit(const openvdb::GridBase& grid) {
+  if (const auto size = storedVoxelSize(grid)) return size->unit();
+  return grid.voxelSize() == openvdb::Vec3d(1) ? "" : "an unknown unit";
+}
 
 bool isMeshEnding(const std::string& path) {
   const std::string end = fileEnding(path);

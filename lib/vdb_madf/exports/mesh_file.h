@@ -24,6 +24,10 @@ struct MeshFileOptions {
   bool shadeSmooth = false;                ///< with normals; else triangles are shown as planes
 };
 
+/// The length unit of a grid's world: of its voxel size; empty where one unit is one voxel, and "an
+/// unknown unit" where it is not.
+std::string worldUnit(const openvdb::GridBase& grid);
+
 /// Writes all grains into one file, whole or not at all, by ending:
 /// - .ply: binary; points with color and int `grain_id`, faces with int `grain_id` and color
 /// - .obj: a group `grain_000123` per grain, points with color; materials in the .mtl beside it

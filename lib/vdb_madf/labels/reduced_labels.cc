@@ -51,4 +51,11 @@ Int32Grid::Ptr reduceLabels(const LabelSlabs& labels, int factor, Interrupter* i
   return whole;
 }
 
+openvdb::math::Transform::Ptr transformInUnitOf(const Int32Grid& labels, const Int32Grid& reduced) {
+  const auto transform = reduced.transform().copy();
+  const auto own = storedVoxelSize(reduced), wanted = storedVoxelSize(labels);
+  if (own && wanted) detail::convertUnit(own->unit(), wanted->unit(), *transform);
+  return transform;
+}
+
 }  // namespace vdb_madf

@@ -31,4 +31,8 @@ Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor,
 Int32Grid::Ptr reduceLabels(const LabelSlabs& labels, int factor,
                             Interrupter* interrupter = nullptr);
 
+/// The transform of reduced labels in the length unit of those that they were made of, which is
+/// another one where only the finer voxels are below 20 nm (see VoxelSize).
+openvdb::math::Transform::Ptr transformInUnitOf(const Int32Grid& labels, const Int32Grid& reduced);
+
 }  // namespace vdb_madf

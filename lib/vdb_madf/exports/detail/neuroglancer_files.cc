@@ -56,11 +56,11 @@ void writeMeshes(const OutputTree& folder, const Int32Grid& labels, const OmeZar
   const double nanometers =
       unitsPerMetre("nm").value() / unitsPerMetre(storedVoxelSize(labels)->unit()).value();
   folder.write(kFolder + "mesh/info", "{\"@type\": \"neuroglancer_legacy_mesh\"}\n");
+  const auto transform = transformInUnitOf(labels, *meshed);
   parallelForEach(mesh.labels.size(), 1, interrupter, [&](size_t grain) {
     const std::string label = std::to_string(mesh.labels[grain]);
     folder.write(kFolder + "mesh/" + label + ":0", "{\"fragments\": [\"" + label + "\"]}\n");
-    folder.write(kFolder + "mesh/" + label,
-                 meshBytes(mesh, grain, meshed->transform(), nanometers));
+    folder.write(kFolder + "mesh/" + label, meshBytes(mesh, grain, *transform, nanometers));
   });
 }
 

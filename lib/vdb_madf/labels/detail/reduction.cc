@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -26,6 +27,11 @@ int floorDiv(int a, int b) {
 }
 
 }  // namespace
+
+void convertUnit(const std::string& from, const std::string& to,
+                 openvdb::math::Transform& transform) {
+  if (from != to) transform.postScale(unitsPerMetre(to).value() / unitsPerMetre(from).value());
+}
 
 Coord floorDiv(const Coord& a, int b) {
   return {floorDiv(a.x(), b), floorDiv(a.y(), b), floorDiv(a.z(), b)};
@@ -193,11 +199,14 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   const auto transform = labels.transform().copy();
   transform->preTranslate(openvdb::Vec3d((factor - 1) / 2.0));
   transform->preScale(factor);
-  grid.setTransform(transform);
   if (const auto domain = storedDomain(labels)) setDomain(grid, reducedDomain(*domain, factor));
-  if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
-    setStoredVoxelSize(grid, VoxelSize({size->edges()[0] * factor, size->edges()[1] * factor,
-                                        size->edges()[2] * factor}));
+  if (const auto size = storedVoxelSize(labels)) {
+    const VoxelSize coarse(
+        {size->edges()[0] * factor, size->edges()[1] * factor, size->edges()[2] * factor});
+    setVoxelSize(grid, coarse);  // maybe in another unit
+    convertUnit(size->unit(), coarse.unit(), *transform);
+  }
+  grid.setTransform(transform);
 }
 
 }  // namespace vdb_madf::detail

@@ -77,6 +77,10 @@ class Reduction {
 void forEachPart(const LabelSlabs& labels, int factor,
                  const std::function<void(const Int32Grid&)>& f, Interrupter* interrupter);
 
+/// Scales a transform into world units of another length.
+void convertUnit(const std::string& from, const std::string& to,
+                 openvdb::math::Transform& transform);
+
 /// Tells a coarse grid its name, and where its voxels lie: transform, domain and voxel size of
 /// `labels`, times the factor.
 void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
