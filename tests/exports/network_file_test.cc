@@ -223,6 +223,9 @@ TEST_CASE("grain_network: what is not known is left out", "[grain_network]") {
   CHECK(count(csv, ",") ==
         3 * (kCsvExtra + network.grainColumns.size() + network.bondColumns.size()));
   for (const std::string& text : {graphml, csv}) CHECK(count(text, "nan") == 0);
+  const GrainNetwork large = grainNetwork(*labelGrid({{Coord(0), 200000000}}));
+  writeNetwork(folder / "large.csv", large);
+  CHECK(count(readFile(folder / "large.csv"), ",200000000,200000000,") == 1);
 }
 
 TEST_CASE("grain_network: same for any number of threads; empty; voxels that are no cubes",

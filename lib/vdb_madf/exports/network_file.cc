@@ -151,7 +151,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
         out.text(",");
       }
       out.number(network.grains[i]);
-      cell(network.grains[i]);
+      out.number(",", network.grains[i]);
       for (const Column& column : pores) cell(column.values[i]);
     } else {
       out.text(noGrain);
