@@ -21,6 +21,28 @@ const Grid& as(const openvdb::GridBase& grid, const char* what) {
   return static_cast<const Grid&>(grid);
 }
 
+/// Sets what is inactive in the labels to 0, as their readers have it: copyToDense() copies what is
+/// stored there.
+template <typename Dense>
+void dropInactive(const Int32Grid& grid, Dense& dense) {
+  const auto accessor = grid.getConstAccessor();
+  const CoordBBox& box = dense.bbox();
+  const Coord begin = box.min() & ~7;
+  Coord origin;
+  for (origin.x() = begin.x(); origin.x() <= box.max().x(); origin.x() += 8)
+    for (origin.y() = begin.y(); origin.y() <= box.max().y(); origin.y() += 8)
+      for (origin.z() = begin.z(); origin.z() <= box.max().z(); origin.z() += 8) {
+        if (const auto* const leaf = accessor.probeConstLeaf(origin)) {
+          for (auto off = leaf->cbeginValueOff(); off; ++off)
+            if (*off && box.isInside(off.getCoord())) dense.setValue(off.getCoord(), 0);
+        } else if (accessor.getValue(origin) && !accessor.isValueOn(origin)) {
+          CoordBBox block = CoordBBox::createCube(origin, 8);
+          block.intersect(box);
+          for (auto p = block.begin(); p; ++p) dense.setValue(*p, 0);
+        }
+      }
+}
+
 /// The values of a box of the array that the grid shows, whose size is that of `out`.
 template <typename T, typename Grid>
 void read(const Grid& grid, const Index& first, py::array_t<T, py::array::c_style>& out) {
@@ -31,6 +53,7 @@ void read(const Grid& grid, const Index& first, py::array_t<T, py::array::c_styl
   openvdb::tools::Dense<T, openvdb::tools::LayoutXYZ> dense(
       CoordBBox(lower, lower + size.offsetBy(-1)), values);
   openvdb::tools::copyToDense(grid, dense);
+  if constexpr (std::is_same_v<Grid, Int32Grid>) dropInactive(grid, dense);
 }
 
 template <typename T>
