@@ -193,6 +193,7 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"track in.vdb other.vdb --share 1.1", "--share"},
       {"track in.vdb other.vdb --min-faces -1", "--min-faces"},
       {"export in.vdb out.ply --bonds b.csv", "--bonds"},
+      {"export in.vdb out.vdb --as grids --bool --smooth 5", "--smooth"},
       {"export in.vdb out.txt --as clumps --cover c.txt", "c.txt"},
       {"export in.vdb out.csv --as clumps --cover c.csv --bonds c.csv", "c.csv"},
       {"render in.vdb out.jpg", "out.jpg"},

@@ -15,6 +15,7 @@
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/standard_streams.h"
+#include "vdb_madf/segmentation/ball_grids.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -166,6 +167,7 @@ void runEdit(const EditArguments& o, const Common& common) {
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *edited.labels, std::nullopt, o.input.path, common);
   } else {
+    dropBalls(input.grids, *input.labels, *edited.labels);
     // Every other grid goes along. Those of the segmentation are told how many grains there are.
     const bool isSegmentation = grainCount(*input.labels).has_value();
     std::vector<openvdb::GridBase::ConstPtr> out;

@@ -144,6 +144,8 @@ void checkOptions(const ExportArguments& o, const std::string& kind) {
     if (isGiven && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
       throw WrongUsage(std::string(option) + " is for --as " + wordList(kinds, ", ") + ", not " +
                        kind);
+  if (o.asBool && o.smoothing != usual.smoothing)
+    throw WrongUsage("--smooth is of level sets, and --bool writes masks: give one of them");
   const bool ofMeshes = o.smoothing != usual.smoothing || reduces || o.mostTriangles > 0;
   if (kind == "zarr" && ofMeshes && !o.meshes)
     throw WrongUsage(
