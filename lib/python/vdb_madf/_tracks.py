@@ -33,9 +33,10 @@ class Tracks:
     before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a grain: `id`, `fate` ("kept", "split", "merged", "vanished", "outside"), `track`,
     `voxels`, `shared_voxels` (in what both volumes show), `links`, `partner`, `overlap_voxels`.
-    With a motion ("kept", "split", "merged", "lost", "outside") the last are `partner`, `confidence` (0 to 1), `miss`
-    (voxels from where its neighbors say it is), `displacement` (z, y, x), `cut` (a scan ends within
-    the grain: the displacement is that of its neighbors), `neighbors` (that these are of:)
+    With a motion ("kept", "split", "merged", "lost", "outside") the last are `partner`,
+    `confidence` (0 to 1), `miss` (voxels from where its neighbors say it is), `displacement`
+    (z, y, x), `cut` (a scan ends within the grain: the displacement is that of its neighbors),
+    `neighbors` (that these are of:)
     `gradient` (3 x 3), `strain_volumetric`, `strain_deviatoric` (Green-Lagrange),
     `rotation` (degrees about z, y, x); NaN for what is not known."""
     after: Dict[str, npt.NDArray[Any]] = field(repr=False)

@@ -38,8 +38,9 @@ const char* toString(Edit::Kind kind);
 /// The text that parseEdit() reads.
 std::string toString(const Edit& edit);
 
-/// Takes next to no time. @throw InvalidInput unless it names as many grains as it takes, none twice,
-///   and its numbers are finite
+/// Takes next to no time.
+/// @throw InvalidInput unless it names as many grains as it takes, none twice, and its numbers are
+///   finite
 void checkEdit(const Edit& edit);
 
 /// @throw InvalidInput, one line without the text: an unknown word, numbers that cannot be grains

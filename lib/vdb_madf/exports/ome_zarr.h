@@ -40,9 +40,9 @@ struct OmeZarrOptions {
 /// Arrays `0`, `1`, `2` ... are the volume at 1/1, 1/2, 1/4 ... until its longest side is that of
 /// a chunk, 64 (at most 1/256). Coarse voxel i stands for the voxels factor * i ... of the index
 /// space, as in reduced_labels.h: a label is the most frequent one, of equally frequent ones the
-/// smallest; background within the box counts; the object's value is 255 times its part of the voxels
-/// in the box, rounded half up. The translation of each level says where the center of its first
-/// voxel lies, so that a voxel has the place in the world that its grid gives it.
+/// smallest; background within the box counts; the object's value is 255 times its part of the
+/// voxels in the box, rounded half up. The translation of each level says where the center of its
+/// first voxel lies, so that a voxel has the place in the world that its grid gives it.
 ///
 /// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on
 /// labels and options alone, those of meshes on the name of the folder, too. Memory: that of

@@ -28,8 +28,8 @@ void checkSameVoxels(const Int32Grid& first, const Int32Grid& second, const Pair
 void checkAnyCommon(const Comparison& comparison, const PairNames& names);
 void checkAnyCommon(const Tracks& tracks, const PairNames& names);
 
-/// Says if voxels are labeled in one of the two alone, and if their domains, or the places of voxels
-/// of equal index, differ. Of the grids only metadata and transforms are looked at.
+/// Says if voxels are labeled in one of the two alone, and if their domains, or the places of
+/// voxels of equal index, differ. Of the grids only metadata and transforms are looked at.
 std::vector<std::string> notesOn(const Comparison& comparison, const Int32Grid& truth,
                                  const Int32Grid& test);
 

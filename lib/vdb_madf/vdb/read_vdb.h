@@ -25,8 +25,8 @@ struct VdbReadOptions {
   /// what is wrong within them is not seen; a tree that a wanted grid shares with another is read,
   /// and so is the region that is its domain.
   std::function<bool(const openvdb::GridBase&)> wanted;
-  /// Reads grids whatever the shape of their voxels. Otherwise a wanted grid is refused whose voxels
-  /// are turned or sheared; their edges may differ from axis to axis.
+  /// Reads grids whatever the shape of their voxels. Otherwise a wanted grid is refused whose
+  /// voxels are turned or sheared; their edges may differ from axis to axis.
   bool anyVoxelShape = false;
 };
 

@@ -15,8 +15,8 @@ namespace vdb_madf {
 // What an image file cannot hold of a volume, as notes for the user, each of which begins with the
 // path; empty if nothing is lost.
 
-/// Says that its voxels are no cubes; in MetaImage that they are cubes of 1 mm, which is what it has
-/// where the size is unknown.
+/// Says that its voxels are no cubes; in MetaImage that they are cubes of 1 mm, which is what it
+/// has where the size is unknown.
 /// @param size unknown: there is nothing to write
 std::string lostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size);
 

@@ -17,9 +17,10 @@ namespace vdb_madf {
 /// @throw InvalidInput for labels and masks that have voxels outside of their domain
 CoordBBox writtenBox(const openvdb::GridBase& grid);
 
-/// Writes the grid's values over `box`, slab by slab: of masks, labels and other whole numbers those
-/// of active voxels, else 0; of real numbers what is stored, background outside of tiles and leaves.
-/// The first voxel lies where the grid's transform has the box's lower corner, see createImage().
+/// Writes the grid's values over `box`, slab by slab: of masks, labels and other whole numbers
+/// those of active voxels, else 0; of real numbers what is stored, background outside of tiles and
+/// leaves. The first voxel lies where the grid's transform has the box's lower corner, see
+/// createImage().
 /// Bool, Mask, Int32, Int64, Float and Double grids; values must be representable in info.type.
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
