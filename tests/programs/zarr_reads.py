@@ -40,7 +40,7 @@ def labels():
 
 def level(volume, factor):
     """The most frequent value of those voxels of each block that lie in the volume, of equally
-    frequent ones the smallest; and the part of the whole block that is labeled, as 0 to 255."""
+    frequent ones the smallest; and the part of these that is labeled, as 0 to 255."""
 
     def count(there):
         padded = np.pad(there, [(0, -n % factor) for n in there.shape])
@@ -50,7 +50,7 @@ def level(volume, factor):
 
     values = np.unique(volume)  # ascending; argmax takes the first
     most = values[np.argmax([count(volume == value) for value in values], axis=0)]
-    part = np.floor(255 * count(volume > 0) / factor**3 + 0.5)
+    part = np.floor(255 * count(volume > 0) / count(np.ones_like(volume)) + 0.5)
     return most.astype("<u4"), part.astype("u1")
 
 

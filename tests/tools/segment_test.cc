@@ -197,7 +197,8 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   const Json made = Json::parse(bench.mustRun(inSlabs + "--json -"));
   for (const char* same : {"object_voxels", "leaves", "slab_count"})
     CHECK(slabs.at(same) == made.at(same));
-  bench.mustRun(inSlabs + "-q --max-memory " + slabs.at("estimated_memory_bytes").dump());
+  const int64_t kibibytes = slabs.at("estimated_memory_bytes").get<int64_t>() / 1024;
+  bench.mustRun(inSlabs + "-q --max-memory " + std::to_string(kibibytes) + "KiB");
   CHECK(slabs.at("slab_count") == 4);
   CHECK(slabs.at("estimated_scratch_bytes") == 5 * slabs.at("object_voxels").get<int64_t>());
   const Json filtered = Json::parse(bench.mustRun(inSlabs + "--gamma 9 --dry-run --json -"));

@@ -287,8 +287,7 @@ void addSweep(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   o->input.addRegion(verb);
-  verb.option("--gamma", o->gamma,
-              "list of gammas, voxels; one segmentation each (default: 0, or that of manifolds)")
+  verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each (default: 0)")
       .typeName("LIST");
   verb.option("--strictness", o->strictness, "list of numbers and of ranges FIRST:LAST:STEP")
       .typeName("LIST")
