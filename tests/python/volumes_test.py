@@ -264,19 +264,6 @@ def test_metadata_of_other_encodings(array, command, tmp_path):
     assert madf.Labels(tmp_path / "l.vdb").metadata["madf_source"].endswith("\ufffd.npy")
 
 
-def test_inactive_values_are_no_labels(labels, dense, tmp_path):
-    openvdb = pytest.importorskip("pyopenvdb")
-    labels.save(tmp_path / "l.vdb")
-    grid = openvdb.read(str(tmp_path / "l.vdb"), "grain")
-    accessor = grid.getAccessor()
-    ijk = tuple(int(i) for i in np.argwhere(dense == labels.ids[0])[0][::-1])
-    accessor.setActiveState(ijk, False)
-    openvdb.write(str(tmp_path / "off.vdb"), grid)
-    off = madf.Labels(tmp_path / "off.vdb")
-    assert np.asarray(off)[ijk[::-1]] == 0
-    assert (np.asarray(off) == off.ids[0]).sum() == off.voxels[0] == labels.voxels[0] - 1
-
-
 def test_a_volume_made_of_one_keeps_place_and_region(array):
     mask = madf.Mask(array, phase=1, voxel_size="10um", roi="cylinder", crop=np.s_[8:40, :, 5:70])
     labels = madf.segment(mask).labels
