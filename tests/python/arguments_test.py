@@ -98,8 +98,8 @@ def test_numbers_of_numpy_are_numbers(array, expected):
     assert np.array_equal(madf.Mask(array, phase=np.array([0])), 1 - array)
     kept = madf.segment(array, phase=1, keep=("manifold",))
     assert kept.sweep(merge="both", delta=np.int64(2))["delta"] == [2]
-    balls = madf.generate("spheres", size=np.int64(24), count=2, radius=(5., 6.))
-    assert np.asarray(balls).shape == (24, 24, 24)
+    snow = madf.generate("snow", size=np.int64(24), length=np.float32(6))[0]
+    assert np.asarray(snow).shape == (24, 24, 24)
 
 
 def test_numbers_out_of_range(array):
