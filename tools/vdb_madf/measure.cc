@@ -56,20 +56,17 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) {
     scan = openScan(o.intensity, o.input, common.progress);
-    requirePlace(*scan, aboutOf(labels));
     noteOfScan(o.intensity.path, noteOnScan(*scan, aboutOf(labels)), common.progress);
   }
   const MaskGrid::Ptr binder =
       o.phases.path.empty() ? nullptr : loadPhase(o.phases, o.binder, o.input, common.progress);
-  if (const auto domain = binder ? storedDomain(*binder) : std::nullopt) {
-    requirePlace(o.phases.path, domain->box(), aboutOf(labels));
-    noteOfScan(o.phases.path, noteOnScan(domain->box(), storedVoxelSize(*binder), aboutOf(labels)),
+  if (const auto domain = binder ? storedDomain(*binder) : std::nullopt)
+    noteOfScan(o.phases.path,
+               noteOnScan(o.phases.path, domain->box(), storedVoxelSize(*binder), aboutOf(labels)),
                common.progress);
-  }
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
     GrayScan gray = openScan(o.gray, o.input, common.progress);
-    requirePlace(gray, aboutOf(labels));
     noteOfScan(o.gray.path, noteOnScan(gray, aboutOf(labels)), common.progress);
     common.progress->start("blur");
     const auto domain = storedDomain(aboutOf(labels));

@@ -100,7 +100,6 @@ std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box
                                   const Common& common) {
   if (o.scan.path.empty()) return {};
   GrayScan scan = openScan(o.scan, o.input, common.progress);
-  requirePlace(scan, about);
   noteOfScan(o.scan.path, noteOnScan(scan, about), common.progress);
   const std::vector<SlicePlane> planes = given.empty() ? middlePlanes(box) : given;
   for (const SlicePlane& plane : planes)

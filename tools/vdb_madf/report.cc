@@ -108,7 +108,6 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   std::optional<GrayScan> scan;
   if (!o.scan.path.empty()) {
     scan = openScan(o.scan, o.input, common.progress);
-    requirePlace(*scan, aboutOf(labels));
     noteOfScan(o.scan.path, noteOnScan(*scan, aboutOf(labels)), common.progress);
     placeScan(*scan, boxOf(aboutOf(labels)));
     options.scan = &*scan;

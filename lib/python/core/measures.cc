@@ -287,14 +287,10 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   const auto noteOf = [&](const std::string& scanName, const std::string& note) {
     if (!note.empty()) notes.push_back(scanName + ": " + note);
   };
-  if (scan) requirePlace(*scan, grid);
   if (scan) noteOf("intensity", noteOnScan(*scan, grid));
-  if (edges) requirePlace(*edges, grid);
   if (edges) noteOf("gray", noteOnScan(*edges, grid));
-  if (const auto domain = third ? storedDomain(*third) : std::nullopt) {
-    requirePlace("phases", domain->box(), grid);
-    noteOf("phases", noteOnScan(domain->box(), storedVoxelSize(*third), grid));
-  }
+  if (const auto domain = third ? storedDomain(*third) : std::nullopt)
+    noteOf("phases", noteOnScan("phases", domain->box(), storedVoxelSize(*third), grid));
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (graph) measureStability(*graph, result);

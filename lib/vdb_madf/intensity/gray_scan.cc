@@ -111,24 +111,18 @@ bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
 
 }  // namespace
 
-void requirePlace(const std::string& path, const CoordBBox& box, const openvdb::GridBase& about) {
-  if (grainCount(about) || !goesOn(box, about)) return;
-  throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
-                     detail::sizeAndPlace(boxOf(about)) +
-                     ", do not say where in it they were cropped: give the scan cropped as they "
-                     "were");
-}
-
-void requirePlace(const GrayScan& scan, const openvdb::GridBase& about) {
-  requirePlace(scan.image->path(), scan.box(), about);
-}
-
-std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,
-                       const openvdb::GridBase& about) {
+std::string noteOnScan(const std::string& path, const CoordBBox& box,
+                       const std::optional<VoxelSize>& voxels, const openvdb::GridBase& about) {
   std::string note;
-  if (goesOn(box, about))
+  if (goesOn(box, about)) {
+    if (!grainCount(about))
+      throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
+                         detail::sizeAndPlace(boxOf(about)) +
+                         ", do not say where in it they were cropped: give the scan cropped as "
+                         "they were");
     note =
         "is larger than the volume of the labels: taken for the scan that they were cropped from";
+  }
   const auto own = storedVoxelSize(about);
   if (voxels && own && detail::haveOtherEdges(*voxels, *own))
     note +=
@@ -138,7 +132,7 @@ std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& vox
 }
 
 std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about) {
-  return noteOnScan(scan.box(), scan.image->info().voxelSize, about);
+  return noteOnScan(scan.image->path(), scan.box(), scan.image->info().voxelSize, about);
 }
 
 GrayScan openGrayScan(const std::string& path, const VolumeOptions& options,

@@ -37,15 +37,11 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample);
 /// 0.1 % (kMaxEdgeRatio).
 /// @param box, voxels of the scan
 /// @param about a grid with the domain and the voxel size of the labels
-std::string noteOnScan(const CoordBBox& box, const std::optional<VoxelSize>& voxels,
-                       const openvdb::GridBase& about);
+/// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond labels of an
+///   image, of an array or of another program: they do not say where in it they lie
+std::string noteOnScan(const std::string& path, const CoordBBox& box,
+                       const std::optional<VoxelSize>& voxels, const openvdb::GridBase& about);
 std::string noteOnScan(const GrayScan& scan, const openvdb::GridBase& about);
-
-/// Labels of an image, of an array or of another program do not say where in a larger scan they
-/// lie.
-/// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond such labels
-void requirePlace(const std::string& path, const CoordBBox& box, const openvdb::GridBase& about);
-void requirePlace(const GrayScan& scan, const openvdb::GridBase& about);
 
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
 /// that the options name, or GridUse::object), with its background outside of its voxels; its box
