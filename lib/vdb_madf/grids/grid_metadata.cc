@@ -87,7 +87,9 @@ std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
 void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSize>& size) {
   metadata.removeMeta(kVoxelSizeKey);
   metadata.removeMeta(kVoxelEdgesKey);
+  metadata.removeMeta(kLengthUnit);
   if (!size) return;
+  metadata.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
   const auto& [x, y, z] = size->edges();
   if (size->isCube())
     metadata.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(x));
@@ -97,8 +99,6 @@ void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSiz
 
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size) {
   setStoredVoxelSize(grid, size);
-  grid.removeMeta(kLengthUnit);
-  if (size) grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
   if (!size || size->isCube()) {
     grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
     return;

@@ -40,7 +40,7 @@ bool isRegion(const openvdb::GridBase& grid, const std::vector<openvdb::GridBase
 /// `madf_voxel_edges_m` (Vec3d: x, y, z), and the unit of the transform in `madf_length_unit`.
 /// Absent: no physical size, one voxel is one unit.
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata);
-/// Sets the metadata alone, but for the unit.
+/// Sets the metadata alone.
 void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSize>& size);
 /// Sets the metadata and the grid's linear transform: world = index * size along each axis, so that
 /// the world position of voxel (i,j,k) is its center. Without a size the transform is the identity.

@@ -355,8 +355,8 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
   }
   result.bonds = bondsOf(result, broken, interrupter);
   result.labels->setName("grain");
-  setVoxelSize(*result.labels, voxelSize_);
-  result.labels->setTransform(transform_->copy());  // which has the place, too
+  setStoredVoxelSize(*result.labels, voxelSize_);
+  result.labels->setTransform(transform_->copy());
   result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options_, step)));
   return result;
 }

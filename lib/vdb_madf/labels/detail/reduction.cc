@@ -203,7 +203,7 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   if (const auto size = storedVoxelSize(labels)) {
     const VoxelSize coarse(
         {size->edges()[0] * factor, size->edges()[1] * factor, size->edges()[2] * factor});
-    setVoxelSize(grid, coarse);  // maybe in another unit
+    setStoredVoxelSize(grid, coarse);  // maybe in another unit
     convertUnit(size->unit(), coarse.unit(), *transform);
   }
   grid.setTransform(transform);

@@ -157,7 +157,7 @@ AnyLabels mergedLabels(const AnyLabels& manifold, const Merging& merging, const 
                        Interrupter* interrupter) {
   if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&manifold)) {
     const Int32Grid::Ptr grains = applyMerging(**whole, merging, 0, interrupter);
-    setVoxelSize(*grains, storedVoxelSize(labels));
+    copyProvenance(labels, *grains);
     return Int32Grid::ConstPtr(grains);
   }
   LabelSlabs slabs = std::get<LabelSlabs>(manifold);

@@ -12,7 +12,6 @@
 #include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/method/boundary.h"
@@ -77,7 +76,7 @@ void noteProportions(const std::string& path, const openvdb::GridBase& grid,
   std::array<double, 3> ratios;
   for (size_t axis = 0; axis < 3; ++axis)
     ratios[axis] = options.voxelSize->edges()[axis] / own[int(axis)];
-  if (vdb_madf::areEdgesOfCube(ratios)) return;
+  if (areEdgesOfCube(ratios)) return;
   options.note(path +
                    ": was segmented in voxels of other proportions, which give other grains: "
                    "segment the object anew",
@@ -127,10 +126,9 @@ void giveDomain(openvdb::GridBase& grid, const std::string& path, const VolumeOp
 
 void giveVoxelSize(openvdb::GridBase& grid, const VolumeOptions& options) {
   if (!options.voxelSize) return;
-  const auto edges = edgesAlongAxes(grid.transform());
-  const openvdb::Vec3d origin = grid.indexToWorld(openvdb::Vec3d(0));
+  const openvdb::Vec3d place = -grid.worldToIndex(openvdb::Vec3d(0));
   setVoxelSize(grid, options.voxelSize);
-  if (edges && origin != openvdb::Vec3d(0)) grid.transform().preTranslate(origin / *edges);
+  if (place != openvdb::Vec3d(0)) grid.transform().preTranslate(place);
 }
 
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
