@@ -119,8 +119,7 @@ Motion parseMotion(const std::string& text, const std::string& path) {
       motion.linear(int(row), int(column)) = numbers[4 * row + column];
     motion.shift[int(row)] = numbers[4 * row + 3];
   }
-  if (!(motion.linear.det() > 0))
-    throw InvalidInput(path + ": the determinant of the matrix must be above 0");
+  withFileName(path, [&] { checkMotion(motion); });
   return motion;
 }
 

@@ -21,8 +21,8 @@ const Grid& as(const openvdb::GridBase& grid, const char* what) {
   return static_cast<const Grid&>(grid);
 }
 
-/// Sets what is inactive in the labels to 0, as their readers have it: copyToDense() copies what is
-/// stored there.
+/// Sets what is inactive in the labels to 0, as their readers have it: OpenVDB copies what is
+/// stored there. (vdb_madf::copyToDense() does not, but looks at all leaf nodes, also for a slice.)
 template <typename Dense>
 void dropInactive(const Int32Grid& grid, Dense& dense) {
   const auto accessor = grid.getConstAccessor();

@@ -34,19 +34,20 @@ void check(const GrainSet& set) {
   }
 }
 
-void check(const Motion& guess) {
-  const double determinant = guess.linear.det();
-  if (guess.shift.isFinite() && determinant > 0 && std::isfinite(determinant)) return;
-  throw InvalidInput("a guess of the motion has finite numbers and a determinant above 0");
-}
-
 }  // namespace
+
+void checkMotion(const Motion& motion) {
+  const double determinant = motion.linear.det();
+  if (!motion.shift.isFinite() || !std::isfinite(determinant))
+    throw InvalidInput("the numbers of a motion must be finite");
+  if (!(determinant > 0)) throw InvalidInput("the determinant of the matrix must be above 0");
+}
 
 std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet& after,
                                           const MatchOptions& options, Interrupter* interrupter) {
   check(before);
   check(after);
-  if (options.guess) check(*options.guess);
+  if (options.guess) checkMotion(*options.guess);
   const detail::ScanGrains first(before, interrupter), second(after, interrupter);
   const detail::SeedSearch search(first, second, options);
   std::optional<detail::Following> following;

@@ -38,6 +38,9 @@ struct Motion {
   openvdb::Vec3d operator()(const openvdb::Vec3d& p) const { return linear * p + shift; }
 };
 
+/// Takes next to no time. @throw InvalidInput unless it is finite, and its determinant above 0
+void checkMotion(const Motion& motion);
+
 /// How a sample has moved as a whole.
 enum class MotionKind {
   rigid,   ///< it was turned and shifted
@@ -92,7 +95,8 @@ struct FollowedGrains {
 /// a scan has few grains of the other one it promises too much.
 /// Deterministic: ties go to the smaller number. N log N. Memory: per grain.
 /// @return nothing if no such place is found, and there is no guess
-/// @throw InvalidInput if numbers do not ascend, or a feature is not finite; Interrupted
+/// @throw InvalidInput if numbers do not ascend, a feature is not finite, or a guess is none (see
+///   checkMotion()); Interrupted
 std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet& after,
                                           const MatchOptions& options = {},
                                           Interrupter* interrupter = nullptr);
