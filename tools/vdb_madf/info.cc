@@ -130,7 +130,7 @@ Json describeSlabs(const SlabFolder& folder, const VdbReadOptions& reading, Prog
       removeGraph(*slab[i]);  // it has a part alone
       if (s == 0)
         grids.push_back(describeGrid(*slab[i]));
-      else if (slab[i]->getName() != "region")  // which each slab has as a whole
+      else if (!isRegion(*slab[i], slab))  // which each slab has as a whole
         addSlab(describeGrid(*slab[i]), grids[i]);
     }
   }

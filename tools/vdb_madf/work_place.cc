@@ -29,8 +29,10 @@ namespace fs = std::filesystem;
 
 using NamedText = std::pair<const char*, std::string>;
 
-/// What was typed of how IN is read, of which the summary of a segmentation says nothing else.
-std::vector<NamedText> readingOptions(const InputOptions& in) {
+/// What was typed, mostly of how IN is read, of which the summary of a segmentation says nothing
+/// else; of boundary and cavities it says what became of them.
+std::vector<NamedText> readingOptions(const SegmentArguments& o) {
+  const InputOptions& in = o.input;
   return {{"dataset", in.dataset},
           {"dims", in.dims},
           {"type", in.type},
@@ -42,7 +44,9 @@ std::vector<NamedText> readingOptions(const InputOptions& in) {
           {"voxel_size", in.voxelSizeText},
           {"domain", in.domainText},
           {"roi", in.roi},
-          {"crop", in.cropText}};
+          {"crop", in.cropText},
+          {"boundary", o.boundary == "auto" ? "" : o.boundary},
+          {"fill_holes", o.fillHoles}};
 }
 
 /// What was typed that the summary says, too.
@@ -73,9 +77,7 @@ std::vector<std::string> sourcesOf(const std::string& path, VolumeOptions option
   if (!fs::is_regular_file(path, error) || hasVdbEnding(path)) return {path};
   try {
     return openVolumeImage(path, options)->files();
-  } catch (const IoError&) {
-    return {path};
-  } catch (const InvalidInput&) {
+  } catch (const HintedError&) {  // IoError or InvalidInput
     return {path};
   }
 }
@@ -109,21 +111,19 @@ Stamp stampOf(const RegionOptions& region) {
 
 Json originOf(const SegmentArguments& o, const Stamp& input) {
   Json origin{{"input", lastPart(o.input.path)}, {"input_bytes", input.bytes}};
-  for (const auto& [name, text] : readingOptions(o.input))
+  for (const auto& [name, text] : readingOptions(o))
     if (!text.empty()) origin["reading"][name] = text;
-  if (o.boundary != "auto") origin["reading"]["boundary"] = o.boundary;
-  if (!o.fillHoles.empty()) origin["reading"]["fill_holes"] = o.fillHoles;
   return origin;
 }
 
 /// The options that slabs depend on. --max-memory only says where to cut, which is done once.
 std::string choicesOf(const SegmentArguments& o) {
   std::string work = kVersion;
-  for (const auto& option : readingOptions(o.input)) work += "\n" + option.second;
+  for (const auto& option : readingOptions(o)) work += "\n" + option.second;
   for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
   for (const std::string& text :
-       {o.boundary, o.gamma, o.fillHoles, o.tidy, o.merge.strictness, o.merge.mode, o.merge.theta,
-        o.merge.delta, o.merge.adjacency, o.merge.minGrain, std::to_string(o.slabHeight)})
+       {o.gamma, o.tidy, o.merge.strictness, o.merge.mode, o.merge.theta, o.merge.delta,
+        o.merge.adjacency, o.merge.minGrain, std::to_string(o.slabHeight)})
     work += "\n" + text;
   for (const bool flag : {o.input.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
