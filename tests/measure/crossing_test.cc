@@ -300,6 +300,43 @@ TEST_CASE("crossing: nothing flows through dead ends, and no more than all", "[c
     }
 }
 
+TEST_CASE("crossing: a current is the same in all links of a long chain of unequal ones",
+          "[crossing]") {
+  constexpr int kGrains = 2000, kEdge = 10;
+  Rng rng(5);
+  Measurements m;
+  m.edges = Vec3d(1);
+  m.sample.box = CoordBBox(Coord(0), Coord(kGrains * kEdge - 1, kEdge - 1, kEdge - 1));
+  for (int i = 0; i < kGrains; ++i) {
+    GrainMeasures grain;
+    grain.id = i + 1;
+    grain.volume = kEdge * kEdge * kEdge;
+    grain.centroid = Vec3d(kEdge * (i + 0.5) - 0.5, 4.5, 4.5);
+    m.grains.push_back(grain);
+  }
+  for (int i = 0; i + 1 < kGrains; ++i) {
+    BondMeasures bond;
+    bond.first = i + 1;
+    bond.second = i + 2;
+    bond.area = kEdge * kEdge * std::pow(10, -8 * rng.unit());
+    bond.centroid = Vec3d(kEdge * (i + 1) - 0.5, 4.5, 4.5);
+    m.bonds.push_back(bond);
+  }
+  for (const bool isUpper : {false, true}) {
+    GrainCut cut;
+    cut.axis = 0;
+    cut.isUpper = isUpper;
+    cut.area = kEdge * kEdge;
+    cut.centroid = Vec3d(isUpper ? kGrains * kEdge - 0.5 : -0.5, 4.5, 4.5);
+    (isUpper ? m.grains.back() : m.grains.front()).cuts.push_back(cut);
+  }
+  measureCrossings(m);
+  CHECK(m.crossings->along[0].conductivity > 0);
+  double least = 1;
+  for (const BondMeasures& bond : m.bonds) least = std::min(least, bond.crossing->current[0]);
+  CHECK(least == Approx(1).epsilon(1e-6));
+}
+
 TEST_CASE("crossing: the conductivity is that of the network", "[crossing]") {
   Rng rng(8);
   int conduct = 0;

@@ -4,6 +4,7 @@
 #include "vdb_madf/measure/crossing.h"
 
 #include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
@@ -122,11 +123,14 @@ class HeldNetwork {
   HeldNetwork& operator=(const HeldNetwork&) = delete;
 
   /// Of the grains, the held outlets being at `at`(outlet). Grains that hang on none are at 0.
+  /// Long chains of unequal bonds are eliminated: conjugate gradients do not come to their end.
   template <typename At>
   Eigen::VectorXd potentials(const At& at) const {
     Eigen::VectorXd inflow = Eigen::VectorXd::Zero(matrix_.rows());
     for (const Outlet& outlet : held_) inflow[outlet.grain] += outlet.conductance * at(outlet);
-    return solver_.solve(inflow);
+    const Eigen::VectorXd found = solver_.solve(inflow);
+    if (solver_.info() == Eigen::Success) return found;
+    return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix_).solve(inflow);
   }
   const std::vector<Outlet>& held() const { return held_; }
 
