@@ -27,12 +27,13 @@ TEST_CASE("measure_necks: grains without a bond tell whether they are dark, too"
     }
     return square < 64 ? ball : 0;
   };
-  std::vector<float> values, rolled;
+  std::vector<float> values, rolled, moved;
   for (int z = 0; z < kEdge; ++z)
     for (int y = 0; y < kEdge; ++y)
       for (int x = 0; x < kEdge; ++x) {
         values.push_back(ballAt({x, y, z}) ? 20000 : 40000);
         rolled.push_back(ballAt({x, y, (z + 14) % kEdge}) ? 20000 : 40000);
+        moved.push_back(ballAt({(x + 1) % kEdge, y, (z + 2) % kEdge}) ? 20000 : 40000);
       }
   const auto labels =
       drawLabels(box, [&](const openvdb::Vec3d& p) { return ballAt(Coord::round(p)); });
@@ -48,4 +49,7 @@ TEST_CASE("measure_necks: grains without a bond tell whether they are dark, too"
   CHECK(measured.scan->outside == 40000);
   CHECK_THROWS_WITH(measureNecks(*labels, other, blur, measured),
                     vdb_madf::test::Contains("not where the labels have them"));
+  GrayScan near{imageOf(size, moved), Coord(0)};
+  CHECK_THROWS_WITH(measureNecks(*labels, near, blur, measured),
+                    vdb_madf::test::Contains("from where the labels have them (along x, z)"));
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/intensity/detail/grains_in_scan.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
 #include "vdb_madf/intensity/detail/section_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
@@ -43,6 +45,7 @@ constexpr double kMostError = 21, kMostErrorShare = 0.35, kMostGrowth = 3;
 // As many of the labeled voxels have to be on the grains' side of the scan's middle gray, and of
 // the others on the other side, in the mean; of a scan of something else it is a half.
 constexpr double kLeastAgreement = 0.65;
+constexpr double kMostShift = 0.7;   // voxels between labels and scan, along an axis
 constexpr size_t kSomeLeaves = 256;  // that tell it where no bond does
 
 /// Height of the last voxels that count in a section.
@@ -282,34 +285,31 @@ class NeckMeter {
 
 /// The blur with the grains inside, which a scan may show darker than what is around them; none if
 /// the voxels that were read are all of grains, or all of what is around them.
-/// @throw InvalidInput, one line that names the scan, if it does not show the labels' grains
+/// @throw InvalidInput, one line that names the scan, if it does not show the labels' grains, or
+///   somewhere else
 std::optional<ScanBlur> withGrainsInside(const ScanBlur& blur, const Int32Tree& labels,
                                          const FloatTree& gray, const CoordBBox& known,
                                          const std::string& path) {
-  const double middle = (blur.inside + blur.outside) / 2;
-  int64_t voxels[2] = {0, 0}, bright[2] = {0, 0};  // of what is around grains, of grains
-  for (auto leaf = gray.cbeginLeaf(); leaf; ++leaf) {
-    const auto* labeled = labels.probeConstLeaf(leaf->origin());
-    CoordBBox part = leaf->getNodeBoundingBox();
-    part.intersect(known);
-    for (auto p = part.begin(); p; ++p) {
-      const openvdb::Index i = leaf->coordToOffset(*p);
-      const double value = double(leaf->getValue(i));
-      if (!std::isfinite(value)) continue;
-      const bool isGrain = labeled && detail::labelAt(*labeled, labeled->buffer().data(), i) != 0;
-      ++voxels[isGrain];
-      bright[isGrain] += value > middle;
-    }
-  }
-  if (voxels[0] == 0 || voxels[1] == 0) return std::nullopt;
-  const double difference =
-      double(bright[1]) / double(voxels[1]) - double(bright[0]) / double(voxels[0]);
-  if (std::abs(difference) < 2 * kLeastAgreement - 1)
+  const detail::GrainsInScan grains =
+      detail::grainsInScan(labels, gray, known, (blur.inside + blur.outside) / 2);
+  if (!grains.brighter) return std::nullopt;
+  if (std::abs(*grains.brighter) < 2 * kLeastAgreement - 1)
     throw InvalidInput(path +
                        ": its grains are not where the labels have them: give the scan that they "
                        "were made of, with axes and slices in the same order");
+  std::string axes;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(grains.shift[axis]) > kMostShift)
+      axes += std::string(axes.empty() ? "" : ", ") + "xyz"[axis];
+  if (!axes.empty())
+    throw InvalidInput(path +
+                       ": its grains lie about a voxel or more from where the labels have "
+                       "them (along " +
+                       axes +
+                       "): give the scan that they were made of, "
+                       "whole or cropped as they were");
   ScanBlur turned = blur;
-  if (difference < 0) std::swap(turned.inside, turned.outside);
+  if (*grains.brighter < 0) std::swap(turned.inside, turned.outside);
   return turned;
 }
 

@@ -38,7 +38,8 @@ namespace vdb_madf {
 /// @throw InvalidInput, one line that names the scan, if the domain is unknown or the scan's box
 ///   does not fit (as measureGray()), if voxels are no cubes, or if its grains are elsewhere:
 ///   around bonds (around some grains where no bond tells) of the voxels of grains and of others
-///   less than 65 % in the mean are on their own side of the middle gray; IoError; Interrupted.
+///   less than 65 % in the mean are on their own side of the middle gray, or a voxel or more along
+///   an axis from where the labels have them (detail/grains_in_scan.h); IoError; Interrupted.
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
                   Measurements& measured, Interrupter* interrupter = nullptr);
 
