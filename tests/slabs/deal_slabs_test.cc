@@ -75,6 +75,32 @@ TEST_CASE("dealt slabs: about as much for each member, within the limits", "[sla
   CHECK(deal(layers, 1, {}, 0, domain).cuts == Cuts{-24, 64});
 }
 
+TEST_CASE("dealt slabs: what the whole takes is not left for a slab", "[slabs]") {
+  ThreadTeam team(2);
+  const SlabCosts costs({});
+  std::vector<MaskTree> layers(4);  // with a speck in each leaf node
+  for (size_t i = 0; i < layers.size(); ++i)
+    for (int x = 0; x < 3; ++x) layers[i].setValueOn(Coord(8 * x + 3, 3, 8 * int(i) + 3));
+  std::vector<LeafIndex::LeafVoxels> leaves;
+  const LeafCosts layer = addLeaves(layers[0], costs, leaves);
+  REQUIRE(layer.ofWhole >= 3 * costs.speck);
+  const int64_t whole = 4 * layer.ofWhole;
+  const auto cutsFor = [&](int64_t bytes) {
+    Cuts cuts;
+    asMembers(team, [&](Team& member) {
+      MemoryScratch scratch;
+      SlabDealer dealer(member, costs, scratch);
+      for (size_t i = size_t(member.member()); i < layers.size(); i += 2) dealer.add(layers[i]);
+      dealer.finish({bytes, 0, 8}, 0, {});
+      if (member.member() == 0) cuts = storedSlabs(scratch, MaskGrid::create()).cuts;
+    });
+    return cuts;
+  };
+  CHECK(cutsFor(2 * layer.ofSlab + whole) == Cuts{0, 16, 32});
+  CHECK(cutsFor(2 * layer.ofSlab + whole - 1) == Cuts{0, 8, 16, 24, 32});
+  CHECK(cutsFor(1) == Cuts{0, 8, 16, 24, 32});
+}
+
 TEST_CASE("dealt slabs: a member has its own, and what lies within reach", "[slabs]") {
   const Layers layers{{0, 1}, {8, 30}, {16, 1}, {24, 1}, {32, 1}, {40, 1}};
   const Dealt own = deal(layers, 3, {0, 16, 8}, 0);

@@ -34,18 +34,19 @@ bool isWanted(const Team& team, int member, const std::vector<int>& cuts, int64_
 struct SlabDealer::Layers {
   int first = 0;  ///< z of the lowest
   std::vector<int64_t> bytes;
+  int64_t whole = 0;  ///< bytes that the whole takes, all the time
 
   std::vector<int> chooseCuts(const SlabLimits& limits, int members) const;
 };
 
 void SlabDealer::add(const MaskTree& layer) {
   Leaves leaves;
-  const int64_t bytes = addLeaves(layer, costs_, leaves).ofSlab;
+  const LeafCosts costs = addLeaves(layer, costs_, leaves);
   if (leaves.empty()) return;
   const int z = leaves[0].origin.z();
   for (const LeafIndex::LeafVoxels& leaf : leaves)
     if (leaf.origin.z() != z) throw InvalidInput("a layer of leaf nodes has several heights");
-  if (!read_.emplace(z, bytes).second) throw InvalidInput("a layer of leaf nodes comes twice");
+  if (!read_.emplace(z, costs).second) throw InvalidInput("a layer of leaf nodes comes twice");
   detail::writeLeaves(scratch_, layerName(z), leaves);
 }
 
@@ -71,27 +72,34 @@ SlabDealer::Layers SlabDealer::countLayers(const std::optional<Domain>& domain) 
   if (!read_.empty()) include(read_.begin()->first, read_.rbegin()->first);
   if (domain && !domain->box().empty()) include(domain->box().min().z(), domain->box().max().z());
   team_.max(ends);
-  if (ends[0] == kNothing) return {0, {0}};
+  if (ends[0] == kNothing) return {0, {0}, 0};
   Layers layers;
   layers.first = int(-ends[0]) & ~7;
   layers.bytes.assign(size_t((ends[1] - layers.first) / 8 + 1), 0);
-  for (const auto& [z, ofLayer] : read_) layers.bytes[size_t(z - layers.first) / 8] = ofLayer;
+  for (const auto& [z, costs] : read_) {
+    layers.bytes[size_t(z - layers.first) / 8] = costs.ofSlab;
+    layers.whole += costs.ofWhole;
+  }
+  layers.bytes.push_back(layers.whole);
   team_.sum(layers.bytes);
+  layers.whole = layers.bytes.back();
+  layers.bytes.pop_back();
   return layers;
 }
 
 std::vector<int> SlabDealer::Layers::chooseCuts(const SlabLimits& limits, int members) const {
   int64_t total = 0;
   for (const int64_t ofLayer : bytes) total += ofLayer;
-  int64_t most = total / members + 1;
-  if (limits.bytes > 0) most = std::min(most, limits.bytes);
+  // A slab has one layer at least, however little the whole leaves it.
+  const int64_t allowed = limits.bytes > 0 ? std::max<int64_t>(limits.bytes - whole, 1) : INT64_MAX;
+  const int64_t most = std::min(total / members + 1, allowed);
   std::vector<int> cuts{first};
   int64_t inSlab = 0;
   for (size_t layer = 0; layer < bytes.size(); ++layer) {
     const int z = first + int(layer) * 8, height = z - cuts.back();
     // A cut where the slab's share is nearer than after this layer; a limit is not passed.
-    const bool isFull = inSlab > 0 && (inSlab + bytes[layer] / 2 >= most ||
-                                       (limits.bytes > 0 && inSlab + bytes[layer] > limits.bytes));
+    const bool isFull =
+        inSlab > 0 && (inSlab + bytes[layer] / 2 >= most || inSlab + bytes[layer] > allowed);
     const bool isHigh = limits.height > 0 && height + 8 > (limits.height + 7) / 8 * 8;
     if (height >= std::max(limits.leastHeight, 8) && (isFull || isHigh)) {
       cuts.push_back(z);

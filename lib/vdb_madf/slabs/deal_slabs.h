@@ -40,7 +40,7 @@ class SlabDealer {
   Team& team_;
   SlabCosts costs_;
   Scratch& scratch_;
-  std::map<int, int64_t> read_;  // what the layers of this member cost, by their z
+  std::map<int, LeafCosts> read_;  // what the layers of this member cost, by their z
 };
 
 }  // namespace vdb_madf
