@@ -119,7 +119,8 @@ class Segmentation:
     def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
              threads: int = 0) -> "Segmentation":
         """Edited labels, as of Labels.edit(), with the kept manifolds to split grains by. Where
-        something was dropped `counts` are without those of balls, critical points and cavities."""
+        something was dropped `counts` are without those of balls, critical points and cavities;
+        what was kept stays that of the whole object."""
         labels = self.labels.edit(edits, manifold=self.manifold, progress=progress, threads=threads)
         return replace(self, labels=labels, counts=_counts(labels), seconds={})
 
