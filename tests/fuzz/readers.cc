@@ -26,6 +26,9 @@
 #include "vdb_madf/base/size_text.h"
 #include "vdb_madf/edits/edits.h"
 #include "vdb_madf/files/verified_files.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/measure/size_curve.h"
+#include "vdb_madf/samples/balls.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder_writer.h"
 
@@ -52,7 +55,8 @@ struct FuzzedReader {
 std::string complaintOfImage(const CorpusSample& sample, const std::string& path) {
   const std::string wrong = complaint(path, sample.bytes(), sample.expansion);
   // A wide row of a fax takes a bit.
-  return sample.format == "tif" && wrong.find("claims") == 0 ? "" : wrong;
+  const bool mayClaim = sample.format == "tif" || sample.format == "hdf5";
+  return mayClaim && wrong.find("claims") == 0 ? "" : wrong;
 }
 
 std::string complaintOfVdb(const CorpusSample&, const std::string& path) {
@@ -91,6 +95,26 @@ std::vector<CorpusSample> vdbSamples() {
   for (const char* name : {"index.json", "slab-0001.vdb"}) {
     slabs.changed = std::string("s.slabs/") + name;
     all.push_back(slabs);
+  }
+  return all;
+}
+
+/// Read in a process of its own, which may crash: that has to be an error like any other.
+std::vector<CorpusSample> hdf5Samples() {
+  std::vector<CorpusSample> all;
+  const ScratchFolder folder;
+  for (const SampleType type : {SampleType::uint8, SampleType::int32}) {
+    if (!readsHdf5()) break;
+    ImageInfo info;
+    info.size = {9, 8, 7};
+    info.type = type;
+    info.voxelSize = VoxelSize({1, 1, 2});
+    const std::string path = folder / "a.h5";
+    const auto writer = createImage(path, info);
+    writer->write(7, randomSamples(type, 9 * 8 * 7, 3).data());
+    writer->finish();
+    const std::string bytes = readFile(path);
+    all.push_back(oneFile("hdf5", "a.h5", bytes, bytes.size(), kMaxExpansion));
   }
   return all;
 }
@@ -140,6 +164,7 @@ std::map<std::string, FuzzedReader> allReaders() {
   const ScratchFolder folder;
   for (const SampleFile& file : sampleFiles(folder)) add(corpusSample(file), complaintOfImage);
   for (const CorpusSample& sample : corpusSamples()) add(sample, complaintOfImage);
+  for (const CorpusSample& sample : hdf5Samples()) add(sample, complaintOfImage);
   for (const CorpusSample& sample : vdbSamples()) add(sample, complaintOfVdb);
   readers["edits"] = {
       {textSample("split 9\nmerge 12 17 # why\ndrop 5,6\nkeep 1 2\nmin-voxels 100\nmax-voxels 9\n"
@@ -151,6 +176,18 @@ std::map<std::string, FuzzedReader> allReaders() {
                            "cylinder:z:20,16:14", "3,17,25", "1,-2,3", "8.5um", "2.5e-3"})
     options.samples.push_back(textSample(text));
   readers["options"] = options;
+  readers["balls"] = {
+      {textSample("# x y z r\n1 2 3 0.5\n-4e1,5,6,1\n\n7\t8 9 2\n"),
+       textSample("1 0 0 0 4\n2 9 0 0 4.5\n")},
+      {},
+      [](const std::string& text) {
+        readAs(text, {[](auto& t) { parseBalls(t); }, [](auto& t) { parseBalls(t, true); }});
+      }};
+  readers["size_curve"] = {
+      {textSample("size_um,percent_passing\n100,5\n250.5,50\n400,95\n"),
+       textSample("size_voxel,percent_passing\n3,0\n9,100\n")},
+      {},
+      [](const std::string& text) { readAs(text, {[](auto& t) { parseSizeReference(t); }}); }};
   return readers;
 }
 
