@@ -272,6 +272,10 @@ TEST_CASE("track: what a scan cuts of grains is no motion of theirs", "[track_mo
   }
   CHECK(cut > 20);
   CHECK(strained > 40);
+  // All that is seen in one scan alone is so at its faces.
+  for (const auto* side : {&tracks.before, &tracks.after})
+    for (const TrackedGrain& grain : *side)
+      CHECK((grain.fate == GrainFate::kept || grain.fate == GrainFate::outside));
   // Where the boundary is closed, nothing is cut.
   for (const auto& labels : {before, after}) setBoundary(*labels, Boundary::closed);
   for (const GrainMove& move : track(*before, *after, options).moves) CHECK_FALSE(move.isCut);

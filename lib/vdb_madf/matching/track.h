@@ -49,7 +49,8 @@ enum class GrainFate {
   vanished,  ///< before: linked with none
   appeared,  ///< after: linked with none
   lost,      ///< before, with a motion: it may be there, but is not followed
-  outside    ///< no voxel lies in what both volumes show; with a motion: some would lie out of it
+  outside  ///< no voxel lies in what both volumes show; with a motion: some would, or its scan ends
+           ///< within it
 };
 
 /// What becomes of a bond, or where it comes from; by the faces in what both volumes show.

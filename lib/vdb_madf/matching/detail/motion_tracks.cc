@@ -185,6 +185,15 @@ void linkParts(Sides& sides, Tracks& tracks, ScanLabels& before, ScanLabels& aft
     add(link.after, link.before, link.voxels);
 }
 
+/// Judges grains that were found nowhere and that their own scan cuts: what is seen of such a one
+/// does not tell where it would be looked for, nor how large it is.
+void leaveOutCut(const GrainSet& set, GrainFate unfound, TrackedGrains& grains) {
+  for (const GrainFeatures& grain : set.grains) {
+    TrackedGrain& here = grains.at(grain.grain);
+    if (grain.isCut && here.fate == unfound) here.fate = GrainFate::outside;
+  }
+}
+
 /// The ways back of grains after, of those that are linked.
 Motions motionsBack(const Links& fromAfter, const Motions& motions) {
   Motions back;
@@ -293,6 +302,8 @@ Tracks motionTracks(const AnyLabels& before, const AnyLabels& after, const Track
   link(sides, tracks, first.set, second.set, *followed, domainBefore, domainAfter);
   const Motions motions = motionsOf(first.set, second.set, *followed);
   linkParts(sides, tracks, labelsBefore, labelsAfter, motions, interrupter);
+  leaveOutCut(first.set, GrainFate::lost, sides.before);
+  leaveOutCut(second.set, GrainFate::appeared, sides.after);
   tracks.lastTrack =
       numberTracks(sides, std::exchange(tracks.overlaps, {}), lastTrackOf(aboutOf(before)));
   tracks.bondsBefore = bondsOf(first.contacts, first.contacts, options.minFaces);
