@@ -194,7 +194,8 @@ def test_what_a_file_does_not_hold_is_a_warning(tmp_path):
     for name, texts in [("a.tif", ["where the region ends", "begins at voxel 2,2,0"]),
                         ("a.npy", ["no cubes", "where the region ends", "begins at voxel 2,2,0"]),
                         ("a.nrrd", ["where the region ends"]), ("a.vti", ["where the region ends"]),
-                        ("a.zarr", ["where the region ends"]), ("a.vdb", [])]:
+                        ("a.zarr", ["where the region ends", "begins at voxel 2,2,0"]),
+                        ("a.vdb", [])]:
         with warnings.catch_warnings(record=True) as heard:
             warnings.simplefilter("always")
             round_.save(tmp_path / name)

@@ -122,6 +122,22 @@ TEST_CASE("cli: OME-Zarr is the same for any number of threads, and read back", 
   }
 }
 
+TEST_CASE("cli: exports say which places and edges they do not tell", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack p.vdb --size 40 --radius 6 --voxel-size 2x2x3um");
+  bench.mustRun("segment p.vdb c.vdb --crop 3,0,5:39,39,39 -q");
+  bench.mustRun("convert c.vdb r.vdb --resample 3um -q");
+  const Outcome crop = bench.run("export c.vdb c.zarr"),
+                lattice = bench.run("export c.vdb c.dat --as palabos"),
+                resampled = bench.run("export r.vdb r.zarr");
+  for (const Outcome& outcome : {crop, lattice, resampled}) CHECK(outcome.exitCode == 0);
+  CHECK_THAT(crop.err, Contains("c.zarr: begins at voxel 3,0,5 of the scan, and boxes of grains"));
+  CHECK_THAT(lattice.err,
+             Contains("c.dat: its voxels are no cubes, and a lattice is one of cubes"));
+  CHECK_THAT(lattice.err, Contains("c.dat: begins at voxel 3,0,5 of the scan"));
+  CHECK_THAT(resampled.err, Contains("r.zarr: places in the tables count from voxel 0,0,0"));
+}
+
 TEST_CASE("cli: endings in upper case are the same", "[cli]") {
   const Bench bench;
   makeLabels(bench);

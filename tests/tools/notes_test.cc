@@ -49,7 +49,7 @@ TEST_CASE("cli: a place that is not taken over is said", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres s.vdb --size 32 --count 3 --radius 4:6");
   bench.mustRun("segment s.vdb g.vdb --crop 3,0,5:28,31,31");
-  bench.mustRun("export g.vdb c.zarr");
+  bench.mustRun("export g.vdb c.zarr -q");
   for (const std::string out : {"c.mha", "c.mhd", "c.nrrd"}) {
     bench.mustRun("convert g.vdb " + out);
     notes(bench, "convert " + out + " o.vdb --labels", {out + ": begins elsewhere than at 0"});

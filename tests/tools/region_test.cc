@@ -299,8 +299,10 @@ TEST_CASE("region: what does not hold it says so", "[region]") {
                              ": does not say where the region ends: outside of it there is 0, as "
                              "in pores (a .vdb says it)")));
   }
-  CHECK_THAT(bench.mustRun("export r.vdb o.dat --as palabos"),
+  const Outcome lattice = bench.run("export r.vdb o.dat --as palabos");
+  CHECK_THAT(lattice.out,
              Contains("2 = inside, outside of the region as in grains, 28x28x32 voxels"));
+  CHECK_THAT(lattice.err, Contains("o.dat: begins at voxel 2,2,0 of the scan"));
   bench.mustRun("convert r.vdb o.vdb");
 }
 

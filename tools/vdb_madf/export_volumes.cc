@@ -7,6 +7,7 @@
 
 #include "export.h"
 #include "grid_image.h"
+#include "scan_option.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/palabos_file.h"
@@ -14,6 +15,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/volumes/image_losses.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -47,6 +49,11 @@ void writeMask(const ExportArguments& o, const CoordBBox& box, const LabelSlabs&
 void exportPalabos(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = writtenBox(labels);
   writePalabos(o.out, labels, box, common.progress);
+  if (!hasCubicVoxels(labels))
+    note({o.out + ": its voxels are no cubes, and a lattice is one of cubes: resample them first "
+                  "(vdb_madf convert --resample)"},
+         common);
+  note({lostPlace(o.out, labels)}, common);
   const auto domain = storedDomain(labels);
   say(o, common,
       std::string("0 = fluid, 1 = wall, 2 = inside") +
@@ -92,7 +99,8 @@ void exportZarr(const ExportArguments& o, const Common& common, const Labels& la
   options.mesh = meshOptions(o);
   options.meshReduction = reductionOf(o, aboutOf(labels));
   writeOmeZarr(o.out, labels, box, options, common.progress);
-  note({lostRegion(o.out, aboutOf(labels)), lostBoundary(o.out, aboutOf(labels))}, common);
+  note(zarrLossesOf(o.out, aboutOf(labels)), common);
+  noteOfScan(o.out, noteOnPlaces(aboutOf(labels)), common.progress);
   say(o, common,
       fmt::format("OME-Zarr {}, the object and labels/grain, {}{}", o.ome, sizeText(box),
                   o.meshes ? "; meshes and measures for neuroglancer" : ""));

@@ -3,8 +3,6 @@
 
 #include "vdb_madf/measure/measure.h"
 
-#include <fmt/core.h>
-
 #include <memory>
 #include <type_traits>
 
@@ -36,22 +34,10 @@ std::string titleOf(const MeasureArguments& o) {
   return o.tables.sample.empty() ? lastPart(o.input.path) : o.tables.sample;
 }
 
-/// Coarser voxels than those of the scan do not have their first center at 0,0,0.
-void noteOrigin(const MeasureArguments& o, const Int32Grid& about, Progress* progress) {
-  const openvdb::Vec3d first = about.transform().indexToWorld(openvdb::Vec3d(0));
-  const auto size = storedVoxelSize(about);
-  if (!size || first == openvdb::Vec3d(0)) return;
-  noteOfScan(o.input.path,
-             fmt::format("places in the tables count from voxel 0,0,0, whose center is at "
-                         "{:.6g},{:.6g},{:.6g} {}: meshes and networks have that added",
-                         first[0], first[1], first[2], size->unit()),
-             progress);
-}
-
 /// Of labels, a grid or slabs.
 template <typename Labels>
 Measurements measureLabels(const MeasureArguments& o, const Common& common, const Labels& labels) {
-  noteOrigin(o, aboutOf(labels), common.progress);
+  noteOfScan(o.input.path, noteOnPlaces(aboutOf(labels)), common.progress);
   // Scans are opened before the work: what is wrong with them is said at once.
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) {

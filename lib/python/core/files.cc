@@ -20,6 +20,7 @@
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 #include "vdb_madf/pictures/preview_volume.h"
@@ -74,11 +75,14 @@ std::vector<std::string> fileLosses(const std::string& path, const GridPtr& grid
                                     const std::string& kind) {
   if ((kind == "labels" || kind == "mask") && fileEnding(path) != ".vdb")
     return lossesOf(path, *grid);
-  std::vector<std::string> losses;
-  if (kind == "vti" || kind == "zarr") losses.push_back(lostRegion(path, *grid));
-  if (kind == "zarr") losses.push_back(lostBoundary(path, *grid));
-  losses.erase(std::remove(losses.begin(), losses.end(), ""), losses.end());
-  return losses;
+  if (kind == "zarr") {
+    std::vector<std::string> losses = zarrLossesOf(path, *grid);
+    const std::string places = noteOnPlaces(*grid);
+    if (!places.empty()) losses.push_back(path + ": " + places);
+    return losses;
+  }
+  const std::string region = kind == "vti" ? lostRegion(path, *grid) : "";
+  return region.empty() ? std::vector<std::string>() : std::vector<std::string>{region};
 }
 
 void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,

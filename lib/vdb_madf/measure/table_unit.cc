@@ -3,9 +3,12 @@
 
 #include "vdb_madf/measure/table_unit.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf {
 
@@ -29,6 +32,16 @@ TableUnit::TableUnit(const Measurements& measured, const std::string& wanted) {
     length = *std::min_element(voxel.begin(), voxel.end());
   }
   edges = length * measured.edges;
+}
+
+std::string noteOnPlaces(const openvdb::GridBase& labels) {
+  const openvdb::Vec3d first = labels.transform().indexToWorld(openvdb::Vec3d(0));
+  const auto size = storedVoxelSize(labels);
+  if (!size || first == openvdb::Vec3d(0)) return "";
+  return fmt::format(
+      "places in the tables count from voxel 0,0,0, whose center is at {:.6g},{:.6g},{:.6g} {}: "
+      "meshes and networks have that added",
+      first[0], first[1], first[2], size->unit());
 }
 
 }  // namespace vdb_madf

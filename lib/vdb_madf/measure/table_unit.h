@@ -30,4 +30,9 @@ struct TableUnit {
   double volume() const { return length * length * length; }
 };
 
+/// A sentence on labels whose voxel 0,0,0 does not have its center at 0,0,0 of the world, such as
+/// those of coarser voxels than those of their scan: places in the tables count from there. Of
+/// others, and of voxels of unknown size, it is empty.
+std::string noteOnPlaces(const openvdb::GridBase& labels);
+
 }  // namespace vdb_madf

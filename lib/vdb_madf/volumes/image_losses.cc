@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/boundary.h"
@@ -57,6 +59,21 @@ std::string lostPlace(const std::string& path, const openvdb::GridBase& grid) {
       "{}: the center of its first voxel is at {:.6g},{:.6g},{:.6g} {}, and where it is read at 0 "
       "(a .vdb keeps the place)",
       path, center[0], center[1], center[2], size->unit());
+}
+
+std::vector<std::string> zarrLossesOf(const std::string& path, const openvdb::GridBase& labels) {
+  std::vector<std::string> losses{lostRegion(path, labels), lostBoundary(path, labels)};
+  if (!hasCubicVoxels(labels) && !storedVoxelSize(labels))
+    losses.push_back(path +
+                     ": its voxels are no cubes, and of unknown size, so that it is not read as a "
+                     "volume again: give their edges (--voxel-size)");
+  if (const CoordBBox box = boxOf(labels); !box.empty() && box.min() != Coord(0))
+    losses.push_back(fmt::format(
+        "{}: begins at voxel {},{},{} of the scan, and boxes of grains among its measures count "
+        "from the voxel 0,0,0 of that",
+        path, box.min().x(), box.min().y(), box.min().z()));
+  losses.erase(std::remove(losses.begin(), losses.end(), ""), losses.end());
+  return losses;
 }
 
 std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid) {

@@ -30,7 +30,11 @@ std::string lostBoundary(const std::string& path, const openvdb::GridBase& grid)
 /// center lies in the world, as of reduced labels.
 std::string lostPlace(const std::string& path, const openvdb::GridBase& grid);
 
-/// Lists all of these that there are.
+/// Lists what an OME-Zarr lacks, or has otherwise than a reader may think: a region, a closed
+/// boundary, edges without a unit, and boxes of grains that count from voxel 0,0,0 of the scan.
+std::vector<std::string> zarrLossesOf(const std::string& path, const openvdb::GridBase& labels);
+
+/// Lists all of the first four that there are.
 std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid);
 
 }  // namespace vdb_madf
