@@ -232,6 +232,16 @@ def test_pandas(measured):
     assert (bonds["area"] == measured.bonds["area"]).all()
 
 
+def test_what_the_command_notes_is_a_warning():
+    array = np.zeros((40, 40, 40), np.int32)
+    array[4:16, 8:24, 4:20], array[4:16, 8:24, 20:36] = 1, 2
+    labels = madf.Labels(array, voxel_size="2um")
+    with pytest.warns(UserWarning, match="places in the tables count from voxel 0,0,0"):
+        madf.measure(labels.reduce(4))
+    with pytest.warns(UserWarning, match="1 grain: is this a mask"):
+        madf.measure(array > 0)
+
+
 def test_points(measured):
     centers = measured.points()
     assert (centers[:, 0] == measured.grains["centroid_z"]).all() and centers.shape[1] == 3

@@ -287,6 +287,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   const auto noteOf = [&](const std::string& scanName, const std::string& note) {
     if (!note.empty()) notes.push_back(scanName + ": " + note);
   };
+  noteOf("labels", noteOnPlaces(grid));
   if (scan) noteOf("intensity", noteOnScan(*scan, grid));
   if (edges) noteOf("gray", noteOnScan(*edges, grid));
   if (const auto domain = third ? storedDomain(*third) : std::nullopt)
@@ -308,6 +309,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
   });
+  if (measured.grains.size() == 1)
+    noteOf("labels", "there is 1 grain: is this a mask? segment it first");
   const TableUnit unit(measured, unitName);
   py::dict dict, units;
   dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
