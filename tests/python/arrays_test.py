@@ -106,6 +106,37 @@ def test_h5py(array, expected, tmp_path):
         assert np.asarray(madf.segment(chunked, **PHASE).labels).tobytes() == expected.tobytes()
 
 
+def test_edges_of_h5py(array, tmp_path):
+    h5py = pytest.importorskip("h5py", reason="arrays of h5py: not installed")
+    labels = madf.Labels((array > 0).astype(np.int32), voxel_size="1x2x3um")
+    labels.save(tmp_path / "labels.h5")
+    with h5py.File(tmp_path / "labels.h5") as file:
+        assert madf.Labels(file["data"]).spacing == pytest.approx(labels.spacing)
+    with h5py.File(tmp_path / "named.h5", "w") as file:
+        data = file.create_dataset("data", data=np.asarray(labels).transpose())
+        data.attrs["element_size_um"] = 1, 2, 3
+        for axis, name in enumerate("xyz"):
+            data.dims[axis].label = name
+        again = madf.Labels(data)
+        assert again.spacing == pytest.approx(labels.spacing) and again.digest() == labels.digest()
+        data.attrs["element_size_um"] = 1, 0, 3
+        assert madf.Labels(data).unit == "voxel"
+
+
+def test_an_array_of_another_type_than_it_says():
+    values = np.arange(27, dtype=np.float32).reshape(3, 3, 3)
+
+    class Lies(Slabs):
+        def __init__(self, array, dtype):
+            super().__init__(array)
+            self.dtype = np.dtype(dtype)
+
+    assert madf.Mask(Lies(values, np.uint8), threshold=10).voxels == 17
+    for bad in (values - 1, values + 0.5, values + 240):
+        with pytest.raises(madf.InvalidInput, match="said to be of uint8, and gives .* float32"):
+            madf.Mask(Lies(bad, np.uint8), threshold=10)
+
+
 def test_zarr(array, expected, tmp_path):
     zarr = pytest.importorskip("zarr", reason="arrays of zarr: not installed")
     chunked = zarr.open(str(tmp_path / "scan.zarr"), mode="w", shape=array.shape,

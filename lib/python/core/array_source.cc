@@ -13,6 +13,7 @@ ArrayReader::ArrayReader(const ArraySource& source) : source_(source) {
   path_ = source.name;
   info_.size = source.size;
   info_.type = source.type;
+  info_.voxelSize = source.voxelSize;
   info_.format = "array";
 }
 

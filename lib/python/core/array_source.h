@@ -5,6 +5,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <optional>
 #include <string>
 
 #include "vdb_madf/images/image.h"
@@ -18,6 +19,7 @@ struct ArraySource {
   std::string name;  ///< in messages, and in the metadata madf_source
   ImageSize size;
   SampleType type = SampleType::uint8;
+  std::optional<VoxelSize> voxelSize;  ///< that it tells, of an HDF5 file
   py::object read;  ///< read(first, stop): these slices, C-contiguous, of the type
 };
 

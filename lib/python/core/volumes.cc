@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "array_source.h"
 #include "bindings.h"
@@ -161,10 +163,13 @@ void bindVolumes(py::module_& m) {
   bindOptions(m);
   py::class_<ArraySource>(m, "ArraySource", "An array that is read in slabs of slices.")
       .def(py::init([](const std::string& name, const Index& shape, const std::string& type,
-                       const py::object& read) {
-             return ArraySource{name, {shape[2], shape[1], shape[0]}, sampleTypeOf(type), read};
+                       const py::object& read, const std::optional<std::array<double, 3>>& voxel) {
+             ArraySource source{name, {shape[2], shape[1], shape[0]}, sampleTypeOf(type), {}, read};
+             if (voxel) source.voxelSize = VoxelSize({(*voxel)[2], (*voxel)[1], (*voxel)[0]});
+             return source;
            }),
-           py::arg("name"), py::arg("shape"), py::arg("type"), py::arg("read"));
+           py::arg("name"), py::arg("shape"), py::arg("type"), py::arg("read"),
+           py::arg("voxel") = std::nullopt);
   m.def("load_mask", loadMaskFile, py::arg("source"), py::arg("options"), py::arg("call"));
   m.def("load_mask", loadMaskArray, py::arg("source"), py::arg("options"), py::arg("call"));
   m.def("load_labels", loadLabelFile, py::arg("source"), py::arg("options"), py::arg("call"));

@@ -148,9 +148,35 @@ def _array_source(array: Any) -> _core.ArraySource:
             slab = np.asarray(array[key]).transpose(order)
         if slab.dtype.kind in "iu" and slab.dtype.itemsize == 8:
             slab = _narrowed(slab, first)
+        if not np.can_cast(slab.dtype, target) and slab.dtype != dtype:  # an array may err
+            slab = _of_its_type(slab, target, dtype)
         return np.ascontiguousarray(slab, dtype=target)
 
-    return _core.ArraySource(_name(array), (shape[0], shape[1], shape[2]), target.name, read)
+    return _core.ArraySource(_name(array), (shape[0], shape[1], shape[2]), target.name, read,
+                             _edges(array, order))
+
+
+def _of_its_type(slab: npt.NDArray[Any], target: np.dtype[Any],
+                 dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    """What the array gives in its own type, in which all has to fit."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        made = slab.astype(target)
+    if np.any((made != slab) & (slab == slab)):
+        raise _core.InvalidInput(f"the array is said to be of {dtype}, and gives values of "
+                                 f"{slab.dtype} that are none of these: give array.astype()")
+    return made
+
+
+def _edges(array: Any, order: Optional[Tuple[int, int, int]]) -> Optional[_core.Edges]:
+    """What a dataset of h5py says of its voxels along z, y, x in meters, as files of HDF5 do."""
+    if not hasattr(array, "file") or not hasattr(array, "attrs"):
+        return None
+    edges = np.ravel(array.attrs.get("element_size_um", ()))
+    if edges.shape != (3,) or edges.dtype.kind not in "iuf" or not np.all(
+            np.isfinite(edges) & (edges > 0)):
+        return None
+    z, y, x = (float(edges[axis]) * 1e-6 for axis in order or (0, 1, 2))
+    return z, y, x
 
 
 def _mapped(array: Any) -> Optional[mmap.mmap]:
