@@ -45,6 +45,21 @@ def test_layers(labels):
     assert "scale" not in of_bonds and of_bonds["edge_width"] > 0
 
 
+def test_unequal_voxels_of_unknown_size(tmp_path):
+    """A header of NIfTI may have edges without a unit."""
+    nibabel = pytest.importorskip("nibabel", reason="NIfTI: not installed")
+    array = np.zeros((12, 10, 8), np.int16)
+    array[1:5, 2:6, 1:5], array[5:9, 2:6, 1:5] = 1, 2
+    image = nibabel.Nifti1Image(array, np.diag([0.4, 0.4, 0.6, 1]))
+    image.header.set_xyzt_units(0, 0)
+    nibabel.save(image, tmp_path / "a.nii")
+    labels = madf.Labels(tmp_path / "a.nii")
+    assert labels.unit == "voxel" and labels.spacing == pytest.approx((0.6, 0.4, 0.4))
+    (_, of_grains, _), (bonds, _, _) = madf.to_napari(labels)
+    assert bonds[0, 0] == pytest.approx([2.5 * 0.6, 3.5 * 0.4, 2.5 * 0.4])
+    assert of_grains["scale"] == labels.spacing
+
+
 def test_reduced_labels_and_bonds_lie_on_each_other():
     array = np.zeros((40, 40, 40), np.int32)
     array[4:16, 8:24, 4:20], array[4:16, 8:24, 20:36] = 1, 2

@@ -67,7 +67,9 @@ def to_napari(labels: Union[Labels, Segmentation, Source],
 def _factor(measured: Measurements, labels: Labels) -> float:
     """What lengths of the measures are multiplied by to be in the unit of their labels."""
     factor = 1.0
-    if measured.unit != labels.unit:
+    if measured.unit == labels.unit == "voxel":
+        factor = min(labels.spacing)
+    elif measured.unit != labels.unit:
         units = {"mm": 1.0, "um": 1e-3}
         factor = units.get(measured.unit, np.nan) / units.get(labels.unit, np.nan)
     volume = measured.sample["object_voxels"] * np.prod(labels.spacing)

@@ -71,7 +71,8 @@ class Volume:
 
     @property
     def spacing(self) -> Tuple[float, float, float]:
-        """Edges of a voxel along z, y, x, in `unit`."""
+        """Edges of a voxel along z, y, x, in `unit`. If that is "voxel" they are as a header may
+        have them, where the "voxel" of tables is the shortest of them."""
         return self._grid.spacing
 
     @property
