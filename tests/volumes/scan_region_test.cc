@@ -397,5 +397,6 @@ TEST_CASE("scan_region: a mask in memory is the region that it is in a file", "[
   CHECK_THAT(load(path, other).error, Contains("the region: all is 0"));
   setDomain(*region, CoordBBox(Coord(0), Coord(40, 36, 18)));
   other.region.grid = region;
-  CHECK_THAT(load(path, other).error, Contains("the region: is 41x37x19 voxels large"));
+  CHECK_THAT(load(path, other).error,
+             Contains("the region: has 41x37x19 voxels and does not cover"));
 }

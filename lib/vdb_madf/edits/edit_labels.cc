@@ -228,8 +228,9 @@ class Editor {
   double diameter(const Grain& grain) const {
     const auto size = storedVoxelSize(original_);
     if (!size)
-      throw InvalidInput("the size of the voxels is unknown: say it, or give numbers of voxels",
-                         Hint::voxelSize);
+      throw InvalidInput(
+          "the size of the voxels is unknown: say it, or choose by voxels (min-voxels)",
+          Hint::voxelSize);
     const auto& [x, y, z] = size->edges();
     return std::cbrt(6 * double(grain.voxels) * x * y * z / M_PI);
   }

@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
@@ -35,11 +36,6 @@ struct ScanExtent {
 };
 
 constexpr char kAxes[] = "xyz";
-
-std::string sizeText(const CoordBBox& box) {
-  const Coord size = box.dim();
-  return fmt::format("{}x{}x{}", size.x(), size.y(), size.z());
-}
 
 MaskGrid::ConstPtr readRegion(const VolumeOptions& options, Interrupter* interrupter) {
   const std::string& file = options.region.mask;
@@ -71,8 +67,8 @@ Domain maskRegion(const std::string& path, const VolumeOptions& options,
   const auto known = storedDomain(*mask);
   if (known && scan && !known->box().isInside(scan->box()))
     throw InvalidInput(fmt::format(
-        "{}: is {} voxels large and does not cover {}, of {}: give a region of the same voxels",
-        name, sizeText(known->box()), path, sizeText(scan->box())));
+        "{}: has {} and does not cover {}, which has {}: give a region of the same voxels", name,
+        sizeAndPlace(known->box()), path, sizeAndPlace(scan->box())));
   if (known && scan && known->box() != scan->box() && !region.crop && options.note)
     options.note(name + ": is larger than " + path + "; voxels of equal index belong together",
                  NoteAbout::file);
