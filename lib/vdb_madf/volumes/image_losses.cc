@@ -6,12 +6,23 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf {
+
+namespace {
+
+/// Those that are not empty.
+std::vector<std::string> presentOf(std::vector<std::string> losses) {
+  losses.erase(std::remove(losses.begin(), losses.end(), ""), losses.end());
+  return losses;
+}
+
+}  // namespace
 
 std::string lostEdges(const std::string& path, bool areCubes,
                       const std::optional<VoxelSize>& size) {
@@ -72,17 +83,12 @@ std::vector<std::string> zarrLossesOf(const std::string& path, const openvdb::Gr
         "{}: begins at voxel {},{},{} of the scan, and boxes of grains among its measures count "
         "from the voxel 0,0,0 of that",
         path, box.min().x(), box.min().y(), box.min().z()));
-  losses.erase(std::remove(losses.begin(), losses.end(), ""), losses.end());
-  return losses;
+  return presentOf(std::move(losses));
 }
 
 std::vector<std::string> lossesOf(const std::string& path, const openvdb::GridBase& grid) {
-  std::vector<std::string> losses;
-  for (const std::string& loss :
-       {lostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid)), lostRegion(path, grid),
-        lostBoundary(path, grid), lostPlace(path, grid)})
-    if (!loss.empty()) losses.push_back(loss);
-  return losses;
+  return presentOf({lostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid)),
+                    lostRegion(path, grid), lostBoundary(path, grid), lostPlace(path, grid)});
 }
 
 }  // namespace vdb_madf
