@@ -132,7 +132,8 @@ def test_an_array_of_another_type_than_it_says():
             self.dtype = np.dtype(dtype)
 
     assert madf.Mask(Lies(values, np.uint8), threshold=10).voxels == 17
-    for bad in (values - 1, values + 0.5, values + 240):
+    assert madf.Mask(Lies(values.astype(float) / 3, np.float32), threshold=3).voxels == 18
+    for bad in (values - 1, values + 0.5, values + 240, values * np.nan):
         with pytest.raises(madf.InvalidInput, match="said to be of uint8, and gives .* float32"):
             madf.Mask(Lies(bad, np.uint8), threshold=10)
 

@@ -19,7 +19,8 @@ class ArrayLike3D(Protocol):
     dask, xarray.
 
     It has three axes, [z, y, x], and `array[first:stop]` are slices. Where it calls its axes "x",
-    "y" and "z", as xarray does (`array.dims`) and h5py and zarr may, they may come in any order."""
+    "y" and "z", as xarray does (`array.dims`) and h5py and zarr may, they may come in any order. A
+    dataset of h5py tells the edges of its voxels, too, by its attribute `element_size_um`."""
 
     @property
     def shape(self) -> Tuple[int, ...]: ...
@@ -64,6 +65,18 @@ def dense(array: Any) -> npt.NDArray[Any]:
     order = _axes(array)
     values = np.asarray(array)
     return values if order is None else values.transpose(order)
+
+
+def fitted(values: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """The values in that type; those that it does not hold as they are are refused."""
+    if np.can_cast(values.dtype, dtype):
+        return values.astype(dtype, copy=False)
+    with np.errstate(invalid="ignore", over="ignore"):
+        made = values.astype(dtype)
+    changed = values[made != values]
+    if changed.size:
+        raise ValueError(f"{changed.flat[0]} does not fit {np.dtype(dtype)}")
+    return made
 
 
 def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
@@ -148,7 +161,7 @@ def _array_source(array: Any) -> _core.ArraySource:
             slab = np.asarray(array[key]).transpose(order)
         if slab.dtype.kind in "iu" and slab.dtype.itemsize == 8:
             slab = _narrowed(slab, first)
-        if not np.can_cast(slab.dtype, target) and slab.dtype != dtype:  # an array may err
+        if target.kind in "iu" and slab.dtype != dtype:  # an array may err
             slab = _of_its_type(slab, target, dtype)
         return np.ascontiguousarray(slab, dtype=target)
 
@@ -158,13 +171,13 @@ def _array_source(array: Any) -> _core.ArraySource:
 
 def _of_its_type(slab: npt.NDArray[Any], target: np.dtype[Any],
                  dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """What the array gives in its own type, in which all has to fit."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        made = slab.astype(target)
-    if np.any((made != slab) & (slab == slab)):
+    """What the array gives, in the integers that it is said to have."""
+    try:
+        return fitted(slab, target)
+    except ValueError as error:
         raise _core.InvalidInput(f"the array is said to be of {dtype}, and gives values of "
-                                 f"{slab.dtype} that are none of these: give array.astype()")
-    return made
+                                 f"{slab.dtype} that are none of these: give array.astype() "
+                                 f"({error})") from error
 
 
 def _edges(array: Any, order: Optional[Tuple[int, int, int]]) -> Optional[_core.Edges]:

@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import Source, readable, refuse_parts
+from ._arrays import Source, fitted, readable, refuse_parts
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded, refuse_unused
 from ._mesh import Mesh
-from ._volume import Volume, edges_of, fitted, left_behind, same_grid
+from ._volume import Volume, edges_of, left_behind, same_grid
 
 _Ids = Union[Sequence[int], npt.NDArray[np.integer[Any]]]
 

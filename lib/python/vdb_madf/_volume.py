@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked
-from ._arrays import dense, shown
+from ._arrays import dense, fitted, shown
 from ._calls import meters
 
 
@@ -214,18 +214,6 @@ def left_behind(source: object) -> List[str]:
     if isinstance(source, Volume) and (any(source.origin) or "madf_region" in source.metadata):
         return ["a volume is read as an array: its place and its region are left behind"]
     return []
-
-
-def fitted(values: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
-    """The values in that type; those that it does not hold as they are are refused."""
-    if np.can_cast(values.dtype, dtype):
-        return values.astype(dtype, copy=False)
-    with np.errstate(invalid="ignore", over="ignore"):
-        made = values.astype(dtype)
-    changed = values[made != values]
-    if changed.size:
-        raise ValueError(f"{changed.flat[0]} does not fit {np.dtype(dtype)}")
-    return made
 
 
 def _ranges(key: Any, shape: Tuple[int, int, int]) -> Tuple[List[range], List[bool]]:
