@@ -9,6 +9,7 @@
 #include "support/memory_image.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/measure_necks.h"
+#include "vdb_madf/scans/filtered_image.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -52,4 +53,57 @@ TEST_CASE("measure_necks: grains without a bond tell whether they are dark, too"
   GrayScan near{imageOf(size, moved), Coord(0)};
   CHECK_THROWS_WITH(measureNecks(*labels, near, blur, measured),
                     vdb_madf::test::Contains("from where the labels have them (along x, z)"));
+}
+
+TEST_CASE("measure_necks: grains that were dropped from the labels do not count",
+          "[measure_necks]") {
+  // Three balls that meet in one place, each pair with a neck of radius 6.
+  constexpr double kRadius = 12, kNeck = 6;
+  const double side = 2 * std::sqrt(kRadius * kRadius - kNeck * kNeck);
+  const Vec3d centers[3] = {
+      {16.2, 16.4, 20.1}, {16.2 + side, 16.4, 20.1}, {16.2 + side / 2, 16.4 + 0.9 * side, 20.1}};
+  const CoordBBox box(Coord(0), Coord(53, 51, 40));
+  const auto nearestTo = [&](const Vec3d& p) {
+    int nearest = 0;
+    for (int ball = 1; ball < 3; ++ball)
+      if ((p - centers[ball]).lengthSqr() < (p - centers[nearest]).lengthSqr()) nearest = ball;
+    return nearest;
+  };
+  const ImageSize size{box.dim().x(), box.dim().y(), box.dim().z()};
+  std::vector<float> values;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        float share = 0;
+        for (int i = 0; i < 64; ++i) {
+          const int parts[] = {i % 4, i / 4 % 4, i / 16};
+          const Vec3d p = Vec3d(x, y, z) + (Vec3d(parts[0], parts[1], parts[2]) - Vec3d(1.5)) / 4;
+          share += (p - centers[nearestTo(p)]).lengthSqr() < kRadius * kRadius;
+        }
+        values.push_back(1000 + 2000 * share / 64);
+      }
+  constexpr double kBlur = 0.8;
+  smoothedImage(imageOf(size, values), kBlur)->read(0, size.z, values.data());
+  const ScanBlur blur{1000, 3000, 0.01, kBlur};
+  const auto neckOf = [&](bool all, float threshold) {
+    const auto labels = drawLabels(box, [&](const Vec3d& p) {
+      const size_t at = size_t((p.z() * size.y + p.y()) * size.x + p.x());
+      const int ball = values[at] < threshold ? 0 : nearestTo(p) + 1;
+      return ball == 3 && !all ? 0 : ball;
+    });
+    setDomain(*labels, box);
+    Measurements measured = measure(*labels);
+    REQUIRE(measured.bonds.size() == (all ? 3 : 1));
+    GrayScan scan{imageOf(size, values), Coord(0)};
+    measureNecks(*labels, scan, blur, measured);
+    REQUIRE(measured.bonds[0].neck);
+    return *measured.bonds[0].neck;
+  };
+  for (const float threshold : {2000.F, 2600.F}) {
+    const Neck among = neckOf(true, threshold), alone = neckOf(false, threshold);
+    CHECK(among.confirmed);
+    CHECK(alone.confirmed);
+    CHECK(among.area == Approx(M_PI * kNeck * kNeck).epsilon(0.12));
+    CHECK(alone.area == Approx(among.area).epsilon(0.06));
+  }
 }

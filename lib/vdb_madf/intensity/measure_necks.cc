@@ -38,6 +38,7 @@ constexpr double kMaxReach = 64;    // of a section, along it
 constexpr double kBlursOfRim = 3;   // from a surface on all is inside or outside
 constexpr double kRim = 0.7;        // voxels, and that many blurs
 constexpr int kEnoughVoxels = 100;  // for a mean of their own
+constexpr size_t kLeastUnknown = 27;  // voxels far from all labels that make a grain without one
 constexpr double kLeastArea = 7;    // voxel faces of a confirmed neck
 // A neck is not known by an error of so many voxel faces and so much of the bond's area, and if its
 // area is so many times that of the bond: blur makes bonds larger, not smaller.
@@ -142,7 +143,7 @@ class NeckMeter {
     const Block<float> gray = copyOf<float>(
         gray_, section.box,
         [](const FloatTree::LeafNodeType& leaf, openvdb::Index i) { return leaf.getValue(i); });
-    const std::vector<Part> parts = partsOf(labels, connected(bond, section, labels));
+    const std::vector<Part> parts = partsOf(labels, connected(bond, section, labels), gray);
     const auto [sections, variance] = areasOf(section, gray, parts);
     const auto area = fit_.leastArea(sections, variance);
     Neck neck;
@@ -200,8 +201,9 @@ class NeckMeter {
   };
 
   /// Rims are on both sides of the surface of what is `own`; where another grain is nearer, a pore
-  /// voxel is none.
-  std::vector<Part> partsOf(const Block<int32_t>& labels, const std::vector<uint8_t>& own) const {
+  /// voxel is none. Others are also those that have no label, but are in the scan.
+  std::vector<Part> partsOf(const Block<int32_t>& labels, const std::vector<uint8_t>& own,
+                            const Block<float>& gray) const {
     const Coord dim = labels.box.dim();
     const std::array<size_t, 3> sizes{size_t(dim.x()), size_t(dim.y()), size_t(dim.z())};
     const int reach = int(rim_), square = int(rim_ * rim_);
@@ -210,8 +212,14 @@ class NeckMeter {
       isPore[i] = labels.values[i] == 0;
       isObject[i] = !isPore[i];
     }
+    auto toObject = detail::nearSquares(sizes, isObject, reach);
+    const std::vector<size_t> unknown = withoutLabel(sizes, gray, isPore, toObject);
+    for (const size_t i : unknown) {
+      isPore[i] = 0;
+      isObject[i] = 1;
+    }
+    if (!unknown.empty()) toObject = detail::nearSquares(sizes, isObject, reach);
     const auto toPore = detail::nearSquares(sizes, isPore, reach);
-    const auto toObject = detail::nearSquares(sizes, isObject, reach);
     const auto toOwn = detail::nearSquares(sizes, own, reach);
     std::vector<Part> parts(own.size(), none);
     for (size_t i = 0; i < own.size(); ++i)
@@ -222,6 +230,48 @@ class NeckMeter {
       else if (isPore[i] && toOwn[i] <= toObject[i])
         parts[i] = rim;
     return parts;
+  }
+
+  /// Voxels of grains that the scan shows and that have no label: those on the grains' side of the
+  /// middle gray that are far from all labels, in pieces that are large enough, and what is within
+  /// a rim of these. (Also grains that have a label may have a skin beyond it.)
+  std::vector<size_t> withoutLabel(const std::array<size_t, 3>& sizes, const Block<float>& gray,
+                                   const std::vector<uint8_t>& isPore,
+                                   const std::vector<int16_t>& toObject) const {
+    const int reach = int(rim_), square = int(rim_ * rim_);
+    const float middle = float((blur_.inside + blur_.outside) / 2);
+    const bool areBright = blur_.inside > blur_.outside;
+    std::vector<uint8_t> isGrain(isPore.size()), isOpen(isPore.size());  // open: not met yet
+    for (size_t i = 0; i < isPore.size(); ++i) {
+      isGrain[i] = isPore[i] && (areBright ? gray.values[i] > middle : gray.values[i] < middle);
+      isOpen[i] = isGrain[i] && toObject[i] > square;
+    }
+    if (size_t(std::count(isOpen.begin(), isOpen.end(), 1)) < kLeastUnknown) return {};
+    std::vector<uint8_t> isFar(isPore.size());
+    bool anyFar = false;
+    std::vector<Coord> piece;
+    for (auto p = gray.box.begin(); p; ++p) {
+      if (!isOpen[gray.at(*p)]) continue;
+      piece.assign(1, *p);
+      isOpen[gray.at(*p)] = 0;
+      for (size_t next = 0; next < piece.size(); ++next)
+        for (int side = 0; side < 6; ++side) {
+          Coord q = piece[next];
+          q[side / 2] += side % 2 ? 1 : -1;
+          if (!gray.box.isInside(q) || !isOpen[gray.at(q)]) continue;
+          isOpen[gray.at(q)] = 0;
+          piece.push_back(q);
+        }
+      if (piece.size() < kLeastUnknown) continue;
+      anyFar = true;
+      for (const Coord& q : piece) isFar[gray.at(q)] = 1;
+    }
+    if (!anyFar) return {};
+    const auto toFar = detail::nearSquares(sizes, isFar, reach);
+    std::vector<size_t> result;
+    for (size_t i = 0; i < isGrain.size(); ++i)
+      if (isGrain[i] && toFar[i] <= square) result.push_back(i);
+    return result;
   }
 
   /// The areas of the sections, and the variance of each.

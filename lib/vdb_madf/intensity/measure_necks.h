@@ -21,8 +21,11 @@ namespace vdb_madf {
 /// The normal joins the means of the voxels of both sides within the radius of the bond and three
 /// voxels around its centroid. A section is what is connected to the bond within 5 voxels along the
 /// normal; voxels further than three blurs and 0.7 voxel from any surface count as all inside or
-/// outside, pore voxels go with the nearest grain, and other grains do not count. The grays of
-/// inside and outside are those around the bond, if there are 100 voxels of each, else the scan's.
+/// outside, pore voxels go with the nearest grain, and other grains do not count, nor do those that
+/// the scan shows and that have no label (any longer): of what is on the grains' side of the middle
+/// gray, 27 voxels or more together that far from all labels, with what is as near to these. The
+/// grays of inside and outside are those around the bond, if there are 100 voxels of each, else the
+/// scan's.
 /// A neck is not known, NaN, if its error is over 21 voxel faces and over 0.35 of the bond's area,
 /// as beside flat faces and in grooves, or its area over 3 times that of the bond plus 7 faces.
 /// A neck is confirmed if its area is at least 7 voxel faces and not below its error. Of others the
