@@ -20,6 +20,7 @@
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -300,4 +301,26 @@ TEST_CASE("measure_gray: labels without a voxel", "[measure_gray]") {
   measureGray(*labels, scan, measured);
   CHECK(measured.extra.gray);
   CHECK(measured.grains.empty());
+}
+
+TEST_CASE("gray_scan: reduced labels of a part do not say where in the scan they lie",
+          "[measure_gray]") {
+  const CoordBBox box(Coord(6, 4, 2), Coord(25, 23, 21)), scan(Coord(0), Coord(39));
+  const auto labels = randomLabels(box, 3);
+  CHECK(noteOnScan("s.tif", scan, std::nullopt, *labels).empty());
+  const auto reduced = reduceLabels(*labels, 2);
+  CHECK_THROWS_WITH(noteOnScan("s.tif", scan, std::nullopt, *reduced),
+                    vdb_madf::test::Contains("count voxels of their own"));
+  CHECK(noteOnScan("s.tif", boxOf(*reduced), std::nullopt, *reduced).empty());
+  setVoxelSize(*labels, VoxelSize(1e-5));
+  const auto sized = reduceLabels(*labels, 2);
+  CHECK(noteOnScan("s.tif", scan, VoxelSize(2e-5), *sized).empty());
+  CHECK_THROWS_AS(noteOnScan("s.tif", scan, VoxelSize(1e-5), *sized), InvalidInput);
+  reduced->insertMeta("madf_grains", openvdb::Int64Metadata(7));  // segmented in such voxels
+  CHECK_THROWS_AS(noteOnScan("s.tif", scan, std::nullopt, *reduced), InvalidInput);
+  MaskTree round;
+  round.sparseFill(box, true);
+  round.setValueOff(box.min());
+  setDomain(*labels, Domain(round));
+  CHECK_THROWS_AS(noteOnScan("s.tif", scan, std::nullopt, *reduceLabels(*labels, 2)), InvalidInput);
 }

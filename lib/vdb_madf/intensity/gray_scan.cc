@@ -109,11 +109,26 @@ bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
          domain->box().min() == box.min();
 }
 
+/// Whether labels of a part of this box lie elsewhere in the world than at their indices, as reduced
+/// and resampled ones do: those count voxels of their own.
+bool countsAnew(const CoordBBox& box, const openvdb::GridBase& about) {
+  const auto domain = storedDomain(about);
+  return domain && domain->box() != box && box.isInside(domain->box()) &&
+         about.transform().indexToWorld(openvdb::Vec3d(0)) != openvdb::Vec3d(0);
+}
+
 }  // namespace
 
 std::string noteOnScan(const std::string& path, const CoordBBox& box,
                        const std::optional<VoxelSize>& voxels, const openvdb::GridBase& about) {
   std::string note;
+  const auto own = storedVoxelSize(about);
+  const bool areSameVoxels = voxels && own && !detail::haveOtherEdges(*voxels, *own);
+  if (!areSameVoxels && countsAnew(box, about))
+    throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
+                       detail::sizeAndPlace(boxOf(about)) +
+                       ", count voxels of their own, as reduced and resampled ones do: give the "
+                       "scan cropped and resampled as they were, or take the labels before that");
   if (goesOn(box, about)) {
     if (!grainCount(about))
       throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
@@ -123,8 +138,7 @@ std::string noteOnScan(const std::string& path, const CoordBBox& box,
     note =
         "is larger than the volume of the labels: taken for the scan that they were cropped from";
   }
-  const auto own = storedVoxelSize(about);
-  if (voxels && own && detail::haveOtherEdges(*voxels, *own))
+  if (voxels && own && !areSameVoxels)
     note +=
         fmt::format("{}has voxels of {}, and the labels of {}: their indices are compared",
                     note.empty() ? "" : "; ", detail::voxelText(*voxels), detail::voxelText(*own));
