@@ -9,6 +9,7 @@
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/read_mask.h"
@@ -143,12 +144,14 @@ std::vector<Selection> selections() {
 std::optional<Coord> firstDifference(const MaskGrid& mask, const MemoryImage& image,
                                      const Selection& selection) {
   const auto accessor = mask.getConstAccessor();
+  const bool areFloats = image.info().type == SampleType::float32;
+  const Selection meant = areFloats ? selection.ofFloats() : selection;
   const Coord size = toCoord(image.info().size);
   size_t i = 0, active = 0;
   for (int z = 0; z < size.z(); ++z)
     for (int y = 0; y < size.y(); ++y)
       for (int x = 0; x < size.x(); ++x, ++i) {
-        const bool expected = selection(image.value(i));
+        const bool expected = meant(image.value(i));
         active += expected;
         if (accessor.isValueOn(Coord(x, y, z)) != expected) return Coord(x, y, z);
       }
@@ -224,4 +227,23 @@ TEST_CASE("image_mask: stops when asked to", "[image_mask]") {
   CHECK_THROWS_AS(readMask(image, {}, &three), Interrupted);
   CHECK(image.reads == 3);
   CHECK(readMask(image, {}, &never)->activeVoxelCount() == 8 * 8 * 80);
+}
+
+// What NumPy says of a float32 array and these numbers.
+TEST_CASE("read_mask: decimals of float32 are those nearest to them", "[read_mask]") {
+  const float values[] = {0.1F, 0.3F, 0.5F, 0.7F, std::nextafter(0.7F, 0.0F)};
+  MemoryImage image(Coord(5, 1, 1), SampleType::float32,
+                    std::string(reinterpret_cast<const char*>(values), sizeof values));
+  const auto count = [&](const Selection& selection) {
+    return readMask(image, selection)->activeVoxelCount();
+  };
+  CHECK(count(Selection::threshold(0.7)) == 1);
+  CHECK(count(Selection::phase(0.7)) == 1);
+  CHECK(count(Selection::phases({0.1, 0.7})) == 2);
+  CHECK(count(Selection::range(0.05, 0.1)) == 1);
+  CHECK(count(Selection::range(0.3, 0.7)) == 4);
+  const auto grid = FloatGrid::create(0);
+  for (int x = 0; x < 5; ++x) grid->tree().setValueOn(Coord(x, 0, 0), values[x]);
+  CHECK(objectMask(*grid, Selection::threshold(0.7))->activeVoxelCount() == 1);
+  CHECK(objectMask(*grid, Selection::phases({0.1, 0.7}))->activeVoxelCount() == 2);
 }

@@ -100,8 +100,9 @@ MaskTree::Ptr voxelsOfDomain(const Tree& tree, const CoordBBox& extent, const Te
 }
 
 template <typename Grid>
-MaskTree::Ptr objectOf(const Grid& grid, const std::optional<Selection>& selection) {
+MaskTree::Ptr objectOf(const Grid& grid, std::optional<Selection> selection) {
   using Value = typename Grid::ValueType;
+  if (std::is_same_v<Value, float> && selection) selection = selection->ofFloats();
   const auto& tree = grid.tree();
   if constexpr (!std::is_same_v<Value, bool>) {
     if (!selection && grid.getGridClass() == openvdb::GRID_LEVEL_SET) {

@@ -27,6 +27,19 @@ struct Selection {
   }
   static Selection range(double low, double high) { return {Kind::range, low, high, false}; }
 
+  /// The same for values that are float32, where 0.7 is the number nearest to 0.7, as in NumPy.
+  Selection ofFloats() const {
+    const auto nearest = [](double number) {
+      return number >= std::numeric_limits<float>::lowest() &&
+                     number <= std::numeric_limits<float>::max()
+                 ? double(float(number))
+                 : number;
+    };
+    Selection result{kind, nearest(low), nearest(high), invert};
+    for (const double value : more) result.more.push_back(nearest(value));
+    return result;
+  }
+
   bool operator()(double value) const {
     if (value != value) return false;
     bool in = kind == Kind::nonZero ? value != 0 : value >= low && value <= high;

@@ -183,7 +183,8 @@ LeafRow packRow(const T* samples, const CoordBBox& slab, const Intervals<T>& obj
 
 template <typename T>
 void packAs(const T* samples, const CoordBBox& slab, const Selection& selection, MaskTree& tree) {
-  const Intervals<T> object = intervalsOf<T>(selection);
+  const Intervals<T> object =
+      intervalsOf<T>(std::is_same_v<T, float> ? selection.ofFloats() : selection);
   const size_t samplesPerRow = size_t(slab.dim().x()) * size_t(kLeafSide * slab.dim().z());
   std::vector<LeafRow> rows(leavesAlong(slab, 1));
   parallelForEach(rows.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr, [&](size_t row) {
