@@ -37,21 +37,31 @@ Coord floorDiv(const Coord& a, int b) {
   return {floorDiv(a.x(), b), floorDiv(a.y(), b), floorDiv(a.z(), b)};
 }
 
+int64_t fineVoxels(const Coord& coarse, int factor, const std::optional<Domain>& domain) {
+  const Coord low(coarse.x() * factor, coarse.y() * factor, coarse.z() * factor);
+  CoordBBox box(low, low.offsetBy(factor - 1));
+  if (domain) box.intersect(domain->box());
+  return int64_t(box.volume());
+}
+
 namespace {
 
-/// A coarse voxel is inside if at least half of its fine ones are.
+/// A coarse voxel is inside if at least half of its fine ones in the box of the region are: then
+/// those that get a label are.
 class RegionReduction {
  public:
   explicit RegionReduction(int factor) : factor_(factor) {}
 
-  Domain reduce(const MaskTree& region) {
+  Domain reduce(const Domain& domain) {
+    const MaskTree& region = *domain.region();
     forEachActiveTile(region, [&](const CoordBBox& box) { addBox(box); });
     for (auto leaf = region.cbeginLeaf(); leaf; ++leaf)
       for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
         add(detail::floorDiv(voxel.getCoord(), factor_), 1);
-    const int64_t all = int64_t(factor_) * factor_ * factor_;
+    const std::optional<Domain> box(domain.box());
     for (auto voxel = inPart_.cbeginValueOn(); voxel; ++voxel)
-      if (2 * int64_t(*voxel) >= all) inside_.setValueOn(voxel.getCoord());
+      if (2 * int64_t(*voxel) >= fineVoxels(voxel.getCoord(), factor_, box))
+        inside_.setValueOn(voxel.getCoord());
     return Domain(inside_);
   }
 
@@ -89,15 +99,8 @@ class RegionReduction {
 }  // namespace
 
 Domain reducedDomain(const Domain& domain, int factor) {
-  if (!domain.isBox()) return RegionReduction(factor).reduce(*domain.region());
+  if (!domain.isBox()) return RegionReduction(factor).reduce(domain);
   return CoordBBox(floorDiv(domain.box().min(), factor), floorDiv(domain.box().max(), factor));
-}
-
-int64_t fineVoxels(const Coord& coarse, int factor, const std::optional<Domain>& domain) {
-  const Coord low(coarse.x() * factor, coarse.y() * factor, coarse.z() * factor);
-  CoordBBox box(low, low.offsetBy(factor - 1));
-  if (domain) box.intersect(domain->box());
-  return int64_t(box.volume());
 }
 
 Reduction::Reduction(const Int32Grid& labels, int factor, const std::optional<Domain>& domain)
