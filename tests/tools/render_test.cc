@@ -281,6 +281,8 @@ TEST_CASE("cli: render colors grains by a column of their table", "[cli]") {
   CHECK_THAT(own.err, vdb_madf::test::Contains("own.csv: 1 of its 2 grains are not among those"));
   const auto paged = bench.run("report s.vdb own.html --with own.csv");
   CHECK_THAT(paged.err, vdb_madf::test::Contains("own.csv: 1 of its 2 grains are not among those"));
+  if (paged.err.find("esbuild") == std::string::npos)  // else there are no pages
+    CHECK_THAT(bench.bytes("own.html"), vdb_madf::test::Contains("\"name\":\"given_sphericity\""));
   bench.write("bad.csv", "label,heat\n1,2\n");
   CHECK(
       bench.run("render s.vdb w.png --color-by heat --with bad.csv").err.find("bad.csv: has no") !=

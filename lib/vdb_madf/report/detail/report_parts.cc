@@ -247,8 +247,8 @@ std::string ReportParts::about() const {
   if (triangles_ > 0)
     json["mesh"] = {{"step", step_}, {"points", points_}, {"triangles", triangles_}};
   json["view"] = {{"azimuth", view_.azimuth}, {"elevation", view_.elevation}};
-  json["columns"] = {{"grains", columnsJson(grainColumns({}, measured_.extra))},
-                     {"bonds", columnsJson(bondColumns({}, measured_.extra))}};
+  json["columns"] = {{"grains", columnsJson(grainColumns(measured_.grains, measured_.extra))},
+                     {"bonds", columnsJson(bondColumns(measured_.bonds, measured_.extra))}};
   if (levels_) {
     const auto colorsOf = [&](const auto& leaves) { return grainColors(leaves, interrupter_); };
     json["levels"] = {{"lowest", levels_->lowest},
