@@ -19,7 +19,7 @@ def check_biases(page):
         demand(said in told, f"the page does not say {said}: {told}")
 
 
-def check_tiles(page, grains):
+def check_tiles(page, grains, bonds):
     """Numbers at the top are those of what passes the filters."""
     voxels = sorted(int(row["voxels"]) for row in grains)
     least = voxels[len(voxels) // 2]
@@ -35,6 +35,14 @@ def check_tiles(page, grains):
         float(row["volume_mm3"]) for row in kept)
     demand(abs(float(shown[6].split()[0]) - surface) < 0.006 * surface,
            f"specific surface: {shown[6]}, not {surface}")
+    # Bonds that do not pass count for no grain.
+    faces = sorted(int(row["faces"]) for row in bonds)
+    least = faces[len(faces) // 2]
+    page.run("window.report.selection.clearFilters();"
+             "window.report.selection.setFilter('bonds', 'faces', [arguments[0], Infinity])", least)
+    mean = 2 * sum(count >= least for count in faces) / len(grains)
+    shown = page.find("#numbers").find_elements("css selector", ".tile")[2].text
+    demand(abs(float(shown.split()[0]) - mean) < 0.006 * mean, f"bonds a grain: {shown}, not {mean}")
     page.run("window.report.selection.clearFilters()")
     demand("of all" not in page.find("#numbers").text, "without filters numbers are those of all")
 

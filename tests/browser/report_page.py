@@ -159,7 +159,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_filters(page, grains)
         check_links(page, grains, bonds)
         check_only(page, path)
-        check_tiles(page, grains)
+        check_tiles(page, grains, bonds)
         check_doubts(page, grains, bonds)
         check_pictures(page)
         check_looks(page, path)

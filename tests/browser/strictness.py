@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a report at other strictnesses than that of its labels."""
 
+import json
 import os
 
 import numpy
@@ -50,6 +51,20 @@ def check_areas(page, kind, name, rows, strictness):
             expected = float(row[name])
             worst = max(worst, abs(value - expected) / max(abs(expected), 1e-4))
     demand(worst < 1e-6, f"{name} of {kind} at {strictness} is off by {worst}")
+
+
+def check_numbers(page, strictness):
+    """The numbers at the top are those of the sample as measure has it."""
+    with open("cut/sample.json", encoding="utf-8") as file:
+        sample = json.load(file)
+    mine = page.run("const {sample, selection} = window.report;"
+                    "return sample.summary(selection.visible, selection.visibleBonds)")
+    for name, expected in (("surface", sample["specific_surface_per_mm"]),
+                           ("coordination", sample["mean_coordination"]),
+                           ("ratio", sample["bond_to_grain_ratio"]),
+                           ("solidFraction", sample["solid_fraction"])):
+        demand(abs(mine[name] - expected) < 1e-5 * expected,
+               f"{name} at {strictness} is {mine[name]}, not {expected}")
 
 
 def check_edits(page, strictness):
@@ -149,6 +164,7 @@ def check_strictness(page, folder):
             for name in AREAS[kind]:
                 check_areas(page, kind, name, rows, strictness)
         check_lives(page, strictness, grains, bonds)
+        check_numbers(page, strictness)
         labels = numpy.load("m.npy")
         shown = page.run(
             "const {sample} = window.report, {size} = sample.about.slices, rows = [];"

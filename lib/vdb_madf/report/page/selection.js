@@ -47,6 +47,7 @@ export class Selection {
     const { sample } = this;
     this.visible = new Uint8Array(sample.count).fill(1);
     this.visibleBonds = new Uint8Array(sample.bonds.rows).fill(1);
+    this.passingBonds = new Uint8Array(sample.bonds.rows).fill(1);  // also of grains that do not pass
     this.states = new Uint8Array(sample.count).fill(kPlain);
   }
 
@@ -164,9 +165,10 @@ export class Selection {
       const atFace = grains.column('at_domain_face');
       for (let row = 0; row < grains.rows; ++row) if (atFace[row]) this.visible[row] = 0;
     }
+    this.passingBonds.fill(1);
+    restrict(this.passingBonds, bonds, this.filters.bonds);
     for (let bond = 0; bond < bonds.rows; ++bond)
-      this.visibleBonds[bond] = this.visible[bondEnds.first[bond]] & this.visible[bondEnds.second[bond]];
-    restrict(this.visibleBonds, bonds, this.filters.bonds);
+      this.visibleBonds[bond] = this.passingBonds[bond] & this.visible[bondEnds.first[bond]] & this.visible[bondEnds.second[bond]];
   }
 
   /// Hidden, pale, plain or selected, for each grain.
