@@ -310,6 +310,35 @@ TEST_CASE("evolve: grains grow, dissolve and enter as they are told to", "[evolv
   }
 }
 
+TEST_CASE("evolve: the region and the boundary are those of before", "[evolve]") {
+  const auto labels = fewGrains();
+  MaskTree round;
+  for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p)
+    if (std::pow((*p).x() - 28, 2) + std::pow((*p).y() - 25, 2) < 400) round.setValueOn(*p);
+  labels->tree().topologyIntersection(round);
+  for (auto value = labels->beginValueOff(); value; ++value) value.setValue(0);
+  setDomain(*labels, Domain(round));
+  setBoundary(*labels, Boundary::closed);
+  EvolveOptions options;
+  options.drift = {5, 0, 0};
+  const Evolution evolution(*labels, options);
+  const EvolvedStep before = evolution.after(0), after = evolution.after(1);
+  for (const EvolvedStep* step : {&before, &after}) {
+    CHECK(*storedDomain(*step->labels) == Domain(round));
+    CHECK(storedBoundary(*step->labels) == Boundary::closed);
+  }
+  CHECK(evolvedHash(*before.labels) == evolvedHash(*labels));
+  int left = 0;
+  for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p) {
+    const int32_t moved = labels->tree().getValue(*p - Coord(5, 0, 0));
+    REQUIRE(after.labels->tree().getValue(*p) == (round.isValueOn(*p) ? moved : 0));
+    left += moved > 0 && !round.isValueOn(*p);
+  }
+  CHECK(left > 100);
+  for (const EvolvedGrain& grain : after.grains)
+    CHECK((grain.fate == EvolvedFate::left || grain.fate == EvolvedFate::kept));
+}
+
 TEST_CASE("evolve: bad options are refused, and it stops when asked to", "[evolve]") {
   const auto labels = fewGrains();
   const auto refuses = [&](auto change) {

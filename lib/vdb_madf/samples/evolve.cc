@@ -171,18 +171,21 @@ std::set<Coord> leafOrigins(const Int32Tree& tree, bool andNeighbors) {
 }
 
 /// Labels that have grown by a length into what is empty; below 0: that lost what is so near to it.
-/// What lies beyond the domain is neither empty nor gets a label.
+/// What lies beyond the domain gets no label, and is empty only beyond closed faces.
 Int32Tree::ConstPtr grownTree(const Int32Tree::ConstPtr& tree, double length,
-                              const std::optional<Domain>& domain, Interrupter* interrupter) {
+                              const std::optional<Domain>& domain, bool isClosed,
+                              Interrupter* interrupter) {
   const auto steps = detail::ballSteps(std::abs(length));
   if (steps.size() == 1) return tree;
-  const auto isSeen = [&](const Coord& p) { return !domain || domain->box().isInside(p); };
+  const auto isSeen = [&](const Coord& p) { return !domain || domain->isInside(p); };
   return mappedTree(*tree, leafOrigins(*tree, length > 0), interrupter,
                     [&](const LabelReader& labels, const Coord& p, int32_t own) {
                       if ((own > 0) == (length > 0) || !isSeen(p)) return own;
                       for (const auto& [squared, step] : steps) {
                         const int32_t label = labelAt(labels, p + step);
-                        if (length > 0 ? label > 0 : label == 0 && isSeen(p + step)) return label;
+                        if (length > 0 ? label > 0
+                                       : label == 0 && (isClosed || isSeen(p + step)))
+                          return label;
                       }
                       return own;
                     });
@@ -294,6 +297,7 @@ Evolution::Evolution(const Int32Grid& labels, const EvolveOptions& options,
     : options_(options),
       tree_(detail::withoutTiles(labels)),
       domain_(storedDomain(labels)),
+      boundary_(storedBoundary(labels)),
       voxelSize_(storedVoxelSize(labels)),
       transform_(labels.transform().copy()),
       center_(boxOf(labels).getCenter()) {
@@ -337,15 +341,21 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
     if (detail::RandomSequence(options_.seed, stream).uniform() < share * options_.breaks)
       broken.insert(bond);
   }
-  const Int32Tree::ConstPtr grown = grownTree(tree_, share * options_.growth, domain_, interrupter);
+  const Int32Tree::ConstPtr grown = grownTree(tree_, share * options_.growth, domain_,
+                                              boundary_ == Boundary::closed, interrupter);
   result.labels =
       Int32Grid::create(brokenTree(movedTree(*grown, grains, Shaking(options_, step), interrupter),
                                    broken, options_.gap, interrupter));
   const auto whole = labelSizes(*result.labels, interrupter);
   if (domain_) {
-    result.labels->tree().clip(domain_->box());
-    openvdb::tools::pruneInactive(result.labels->tree());
-    setDomain(*result.labels, domain_->box());
+    Int32Tree& tree = result.labels->tree();
+    tree.clip(domain_->box());
+    if (!domain_->isBox()) {
+      tree.topologyIntersection(*domain_->region());
+      for (auto value = tree.beginValueOff(); value; ++value) value.setValue(0);
+    }
+    openvdb::tools::pruneInactive(tree);
+    setDomain(*result.labels, *domain_);
   }
   auto within = labelSizes(*result.labels, interrupter);
   for (EvolvedGrain& grain : result.grains) {
@@ -355,6 +365,7 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
   }
   result.bonds = bondsOf(result, broken, interrupter);
   result.labels->setName("grain");
+  setBoundary(*result.labels, boundary_);
   setStoredVoxelSize(*result.labels, voxelSize_);
   result.labels->setTransform(transform_->copy());
   result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options_, step)));

@@ -12,6 +12,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/matching/match_grains.h"
+#include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf {
 
@@ -80,7 +81,7 @@ struct EvolvedBond {
 
 /// A sample after a step, and the truth of it.
 struct EvolvedStep {
-  Int32Grid::Ptr labels;  ///< named `grain`, with the numbers and within the box of before
+  Int32Grid::Ptr labels;  ///< named `grain`, with the numbers, domain and boundary of before
   Motion motion;
   std::vector<EvolvedGrain> grains;  ///< all of before, ascending
   std::vector<EvolvedBond> bonds;    ///< by first, then second
@@ -108,6 +109,7 @@ class Evolution {
   EvolveOptions options_;
   Int32Tree::ConstPtr tree_;  ///< without tiles
   std::optional<Domain> domain_;
+  Boundary boundary_;
   std::optional<VoxelSize> voxelSize_;
   openvdb::math::Transform::ConstPtr transform_;
   openvdb::Vec3d center_;  ///< of the box
