@@ -40,25 +40,13 @@ TEST_CASE("ball_grids: none are found where none were kept", "[ball_grids]") {
   CHECK_FALSE(storedBalls({}));
 }
 
-TEST_CASE("ball_grids: balls go with the grains that they are of", "[ball_grids]") {
-  const auto before = Int32Grid::create(0), after = Int32Grid::create(0);
-  const Coord kept(1), dropped(2), inCavity(3);
-  before->tree().setValue(kept, 1);
-  before->tree().setValue(dropped, 2);
-  after->tree().setValue(kept, 7);
-  std::vector<openvdb::GridBase::Ptr> grids;
-  for (const char* name : {"balls", "balls_cell_size", "distance"}) {
-    const auto grid = Int32Grid::create(0);
-    for (const Coord& p : {kept, dropped, inCavity}) grid->tree().setValue(p, 9);
-    grid->setName(name);
-    grids.push_back(grid);
-  }
-  dropBalls(grids, *before, *after);
-  for (const auto& grid : grids) {
-    CAPTURE(grid->getName());
-    const Int32Tree& tree = openvdb::gridPtrCast<Int32Grid>(grid)->tree();
-    CHECK(tree.isValueOn(kept));
-    CHECK(tree.isValueOn(inCavity));
-    CHECK(tree.isValueOn(dropped) == (grid->getName() == "distance"));
-  }
+TEST_CASE("ball_grids: balls are of the object that their counts tell", "[ball_grids]") {
+  const auto balls = Int32Grid::create(0), labels = Int32Grid::create(0);
+  CHECK(areBallsOfObject(*balls, *labels));
+  balls->insertMeta("madf_object_voxels", openvdb::Int64Metadata(7));
+  CHECK(areBallsOfObject(*balls, *labels));
+  labels->insertMeta("madf_object_voxels", openvdb::Int64Metadata(7));
+  CHECK(areBallsOfObject(*balls, *labels));
+  labels->insertMeta("madf_object_voxels", openvdb::Int64Metadata(6));
+  CHECK_FALSE(areBallsOfObject(*balls, *labels));
 }

@@ -187,6 +187,12 @@ TEST_CASE("cli: labels of another program become a VDB that all verbs read", "[c
   bench.mustRun("export without.vdb computed.csv --as clumps");
   CHECK(bench.bytes("c.csv").size() > 100);
   CHECK(bench.bytes("computed.csv") == bench.bytes("kept.csv"));
+  // Those that were kept reach into grains that were dropped since.
+  for (const std::string labels : {"g", "without"}) {
+    bench.mustRun("edit " + labels + ".vdb few.vdb --keep 2,3");
+    bench.mustRun("export few.vdb " + labels + ".csv --as clumps");
+  }
+  CHECK(bench.bytes("without.csv") == bench.bytes("g.csv"));
 
   bench.write("v.raw", std::string({1, 0, 0, 0, -1, -1, -1, -1}));
   Outcome outcome = bench.run("convert v.raw v.vdb --dims 2x1x1 --type int32 --labels");

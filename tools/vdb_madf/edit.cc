@@ -167,7 +167,6 @@ void runEdit(const EditArguments& o, const Common& common) {
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *edited.labels, std::nullopt, o.input.path, common);
   } else {
-    dropBalls(input.grids, *input.labels, *edited.labels);
     // Every other grid goes along. Those of the segmentation are told how many grains there are.
     const bool isSegmentation = grainCount(*input.labels).has_value();
     std::vector<openvdb::GridBase::ConstPtr> out;

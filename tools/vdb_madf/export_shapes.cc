@@ -65,12 +65,12 @@ void requireCubes(const Int32Grid& labels, const std::string& what) {
   }
 }
 
-/// The medial balls that were kept with the labels, unless those had other voxels; else the balls
-/// of the labels' voxels, with air beyond the faces.
+/// The medial balls that were kept with the labels, unless those had other voxels, or grains that
+/// were dropped since; else the balls of the labels' voxels, with air beyond the faces.
 Int32Grid::Ptr ballsOf(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   if (!o.input.size && isVdb(o.input))
     if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress)))
-      if (areBallsOfVoxels(labels, *kept)) return kept;
+      if (areBallsOfVoxels(labels, *kept) && areBallsOfObject(*kept, labels)) return kept;
   return closedBalls(*objectMask(labels), availableMemory(), common.progress);
 }
 

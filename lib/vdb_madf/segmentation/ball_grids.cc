@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 namespace vdb_madf {
 
@@ -48,24 +49,9 @@ Int32Grid::Ptr storedBalls(const std::vector<openvdb::GridBase::Ptr>& grids) {
   return nullptr;
 }
 
-void dropBalls(const std::vector<openvdb::GridBase::Ptr>& grids, const Int32Grid& before,
-               const Int32Grid& after) {
-  using Labels = openvdb::tree::ValueAccessor<const Int32Tree>;
-  const Labels had(before.tree()), has(after.tree());
-  const auto isGrain = [](const Labels& labels, const Coord& p) {
-    int32_t label = 0;
-    return labels.probeValue(p, label) && label > 0;
-  };
-  for (const auto& grid : grids) {
-    const std::string name = grid->getName();
-    if ((name != kSquaredRadius && name != kCellSize) || !grid->isType<Int32Grid>()) continue;
-    const auto balls = openvdb::gridPtrCast<Int32Grid>(grid);
-    for (auto ball = balls->tree().beginValueOn(); ball; ++ball)
-      if (ball.isVoxelValue() && isGrain(had, ball.getCoord()) && !isGrain(has, ball.getCoord())) {
-        ball.setValue(0);
-        ball.setActiveState(false);
-      }
-  }
+bool areBallsOfObject(const Int32Grid& balls, const Int32Grid& labels) {
+  const auto ofBalls = objectVoxelCount(balls), ofLabels = objectVoxelCount(labels);
+  return !ofBalls || !ofLabels || *ofBalls == *ofLabels;
 }
 
 }  // namespace vdb_madf

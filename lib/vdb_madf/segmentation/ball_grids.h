@@ -25,9 +25,8 @@ Int32Grid::Ptr closedBalls(const MaskGrid& object, int64_t maxMemory,
 /// The squared radii among the grids of a file, "balls"; null if they were not kept.
 Int32Grid::Ptr storedBalls(const std::vector<openvdb::GridBase::Ptr>& grids);
 
-/// Drops from the grids of a file the balls whose center had a label and has none any more: without
-/// it clumps would take them for balls of filled cavities, which belong to the grain around them.
-void dropBalls(const std::vector<openvdb::GridBase::Ptr>& grids, const Int32Grid& before,
-               const Int32Grid& after);
+/// False if balls are those of more or fewer voxels than these labels have, as after grains were
+/// dropped: their counts tell.
+bool areBallsOfObject(const Int32Grid& balls, const Int32Grid& labels);
 
 }  // namespace vdb_madf

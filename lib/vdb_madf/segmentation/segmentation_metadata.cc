@@ -25,6 +25,11 @@ void setText(openvdb::GridBase& grid, const char* key, const std::string& value)
 void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
   grid.insertMeta(key, openvdb::Int64Metadata(value));
 }
+std::optional<int64_t> countOf(const openvdb::GridBase& grid, const char* key) {
+  const auto count = grid.getMetadata<openvdb::Int64Metadata>(key);
+  if (!count) return std::nullopt;
+  return count->value();
+}
 
 void removeMergeOptions(openvdb::GridBase& grid) {
   for (const char* key :
@@ -138,14 +143,15 @@ void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent) {
 }
 
 bool hasSegmentedVoxels(const openvdb::GridBase& grid) {
-  const auto voxels = grid.getMetadata<openvdb::Int64Metadata>(kObjectVoxels);
-  return voxels && voxels->value() == int64_t(grid.activeVoxelCount()) && grid[kCriticalPoints];
+  return objectVoxelCount(grid) == int64_t(grid.activeVoxelCount()) && grid[kCriticalPoints];
+}
+
+std::optional<int64_t> objectVoxelCount(const openvdb::GridBase& grid) {
+  return countOf(grid, kObjectVoxels);
 }
 
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {
-  const auto count = grid.getMetadata<openvdb::Int64Metadata>(kGrains);
-  if (!count) return std::nullopt;
-  return count->value();
+  return countOf(grid, kGrains);
 }
 
 }  // namespace vdb_madf

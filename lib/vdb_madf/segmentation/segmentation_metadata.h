@@ -46,7 +46,8 @@ void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent);
 /// False if a grid no longer has the voxels that were segmented, as a crop: its counts tell.
 bool hasSegmentedVoxels(const openvdb::GridBase& grid);
 
-/// The number of grains that a grid says it has.
+/// The number of object voxels, and of grains, that a grid says it has.
+std::optional<int64_t> objectVoxelCount(const openvdb::GridBase& grid);
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 
 const char* toString(MergeMode mode);
