@@ -63,6 +63,44 @@ TEST_CASE("cli: a place that is not taken over is said", "[cli]") {
   bench.mustRun("convert w.zarr o.vdb --labels --dataset labels/grain/0");
 }
 
+TEST_CASE("cli: that a part of closed labels is closed is said", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.tif --size 24 --length 8");
+  bench.mustRun("segment s.tif g.vdb --boundary closed");
+  bench.mustRun("segment s.tif o.vdb --boundary open");
+  const std::string part = " p.vdb --labels --crop 4,4,4:19,19,19";
+  notes(bench, "convert g.vdb" + part, {"g.vdb: is closed, and so is the part of it"});
+  bench.mustRun("convert o.vdb" + part);
+  bench.mustRun("convert g.vdb p.vdb --labels --crop 0,0,0:23,23,23");
+}
+
+TEST_CASE("cli: that an image does not say closed is said", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 24 --length 8");
+  bench.mustRun("segment s.vdb g.vdb --boundary open");
+  for (const std::string grid : {"s.vdb --grid object ", "g.vdb --grid grain "}) {
+    notes(bench, "convert " + grid + "o.tif --crop 0,0,0:9,9,9 --boundary closed",
+          {"o.tif", "closed"});
+    bench.mustRun("convert " + grid + "o.tif --crop 0,0,0:9,9,9");
+  }
+}
+
+TEST_CASE("cli: cubes in the place of a file's proportions are said", "[cli]") {
+  const Bench bench;
+  bench.write("u.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 3\n"
+                        "encoding: raw\n\n" + std::string(64, '\1'));
+  bench.mustRun("convert u.nrrd u.vdb");
+  bench.mustRun("convert u.nrrd l.vdb --labels");
+  const std::vector<std::string> says{"as 1 to 1 to 3; 10 um was given"};
+  notes(bench, "segment u.nrrd o.vdb --phase 1 --voxel-size 10um", says);
+  notes(bench, "segment u.vdb o.vdb --voxel-size 10um", says);
+  notes(bench, "measure l.vdb t --voxel-size 10um", says);
+  bench.mustRun("measure l.vdb t --voxel-size 10x10x30um");
+  bench.mustRun("segment u.vdb s.vdb --voxel-size 2x2x6um");
+  bench.mustRun("segment u.vdb s.vdb");
+  notes(bench, "measure s.vdb t --voxel-size 10um", {"s.vdb: was segmented in voxels of other"});
+}
+
 TEST_CASE("cli: a voxel size that contradicts the file is said", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow a.tif --size 24 --length 8 --voxel-size 10um");

@@ -62,14 +62,13 @@ void convertMask(const ConvertArguments& o, const Common& common) {
   if (o.cube)
     object =
         withFileName(o.input.path, [&] { return resampleMask(*object, *o.cube, common.progress); });
+  if (o.boundary != "auto") setBoundary(*object, parseBoundary(o.boundary));
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *object, outputType(o), o.input.path, common);
     return;
   }
   const std::string steps = objectSteps(*object);
-  const BoolGrid::Ptr grid = toBoolGrid(*object);
-  if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
-  writeVdb(o.out, {grid}, common.progress);
+  writeVdb(o.out, {toBoolGrid(*object)}, common.progress);
   common.progress->end();
   const auto voxels = int64_t(object->activeVoxelCount());
   if (!common.quiet)
@@ -97,12 +96,12 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
     range = openvdb::tools::minMax(labels->tree());
   }
   labels->setName("grain");
+  if (o.boundary != "auto") setBoundary(*labels, parseBoundary(o.boundary));
   if (o.input.region.any() && grainCount(*labels)) updateCountsOf(*labels, common.progress);
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *labels, outputType(o), o.input.path, common);
     return;
   }
-  if (o.boundary != "auto") setBoundary(*labels, parseBoundary(o.boundary));
   writeVdb(o.out, {labels}, common.progress);
   common.progress->end();
   if (common.quiet) return;

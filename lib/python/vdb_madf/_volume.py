@@ -211,9 +211,14 @@ def same_grid(source: Volume, voxel_size: Optional[str]) -> _core.Grid:
 
 def left_behind(source: object) -> List[str]:
     """A note on a volume that is read as an array."""
-    if isinstance(source, Volume) and (any(source.origin) or "madf_region" in source.metadata):
-        return ["a volume is read as an array: its place and its region are left behind"]
-    return []
+    if not isinstance(source, Volume):
+        return []
+    lost = {"its place and its region": any(source.origin) or "madf_region" in source.metadata,
+            "its closed faces": source.metadata.get("madf_boundary") == "closed",
+            "the proportions of its voxels": (source.voxel_size is None
+                                              and len(set(source.spacing)) > 1)}
+    parts = [part for part, is_lost in lost.items() if is_lost]
+    return [f"a volume is read as an array: {', '.join(parts)} are left behind"] if parts else []
 
 
 def _ranges(key: Any, shape: Tuple[int, int, int]) -> Tuple[List[range], List[bool]]:

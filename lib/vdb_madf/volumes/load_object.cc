@@ -34,6 +34,7 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   const MaskGrid::Ptr object = objectMask(*grid, options.selection);
   if (part) detail::noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
   detail::noteVoxelSize(path, storedVoxelSize(*object), options);
+  detail::noteProportions(path, *object, options);
   despeckleObject(*object, options.gray.despeckle, interrupter);
   return object;
 }
@@ -104,6 +105,7 @@ MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& option
   }
   if (share.parts == 1) detail::noteLeftOut(path, leftOut, "object voxel", options);
   detail::noteVoxelSize(path, storedVoxelSize(*object), options);
+  detail::noteProportions(path, *object, options);
   return object;
 }
 

@@ -56,6 +56,7 @@ std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
                      "first voxel is 0,0,0 (a .vdb keeps the place of a crop)",
                  NoteAbout::file);
   noteVoxelSize(path, image->info().voxelSize, options);
+  if (const auto& edges = image->info().proportions) noteProportions(path, *edges, options);
   return image;
 }
 

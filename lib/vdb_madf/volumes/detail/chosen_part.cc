@@ -13,6 +13,7 @@
 #include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/method/boundary.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
 #include "vdb_madf/scans/detail/field_of_view.h"
 #include "vdb_madf/scans/image_box.h"
@@ -173,6 +174,11 @@ std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
     };
   }
   const ScanPart part = chosenPart(path, options, extent, interrupter);
+  if (storedBoundary(grid) == Boundary::closed && extent.domain && *extent.domain != part.domain &&
+      options.note)
+    options.note(path + ": is closed, and so is the part of it, whose faces cut grains: say that "
+                        "its boundary is open if these go on there",
+                 NoteAbout::file);
   setDomain(grid, part.domain);
   return part;
 }

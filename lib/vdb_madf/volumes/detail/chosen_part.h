@@ -12,7 +12,7 @@
 namespace vdb_madf::detail {
 
 /// The part of a grid of the file at `path` that the options choose, if they choose one: the grid
-/// has it as its domain then. Says what was fitted.
+/// has it as its domain then. Says what was fitted, and that a part of what is closed is closed.
 /// @throw InvalidInput that names the file if there is none, a mask does not cover the scan, or a
 ///   radius cannot be fitted; as loadObject() for a mask.
 std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,

@@ -69,18 +69,43 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
       NoteAbout::voxelSize);
 }
 
+namespace {
+
+bool haveProportions(const VoxelSize& size, const std::array<double, 3>& edges) {
+  std::array<double, 3> ratios;
+  for (size_t axis = 0; axis < 3; ++axis) ratios[axis] = size.edges()[axis] / edges[axis];
+  return areEdgesOfCube(ratios);
+}
+
+}  // namespace
+
+void noteProportions(const std::string& path, const std::array<double, 3>& edges,
+                     const VolumeOptions& options) {
+  if (!options.note || !options.voxelSize || areEdgesOfCube(edges) ||
+      haveProportions(*options.voxelSize, edges))
+    return;
+  const double least = *std::min_element(edges.begin(), edges.end());
+  options.note(fmt::format("{}: the file says that the edges of a voxel are as {} to {} to {}; {} "
+                           "was given and is taken",
+                           path, generalDecimal(edges[0] / least, 4),
+                           generalDecimal(edges[1] / least, 4), generalDecimal(edges[2] / least, 4),
+                           voxelText(*options.voxelSize)),
+               NoteAbout::voxelSize);
+}
+
 void noteProportions(const std::string& path, const openvdb::GridBase& grid,
                      const VolumeOptions& options) {
-  if (!options.note || !options.voxelSize || !grid["madf_gamma"]) return;
-  const openvdb::Vec3d own = grid.voxelSize();
-  std::array<double, 3> ratios;
-  for (size_t axis = 0; axis < 3; ++axis)
-    ratios[axis] = options.voxelSize->edges()[axis] / own[int(axis)];
-  if (areEdgesOfCube(ratios)) return;
-  options.note(path +
-                   ": was segmented in voxels of other proportions, which give other grains: "
-                   "segment the object anew",
-               NoteAbout::voxelSize);
+  if (!options.note || !options.voxelSize) return;
+  const openvdb::Vec3d size = grid.voxelSize();
+  const std::array<double, 3> edges{size[0], size[1], size[2]};
+  if (!grid["madf_gamma"]) {
+    if (!storedVoxelSize(grid)) noteProportions(path, edges, options);
+  } else if (!haveProportions(*options.voxelSize, edges)) {
+    options.note(path +
+                     ": was segmented in voxels of other proportions, which give other grains: "
+                     "segment the object anew",
+                 NoteAbout::voxelSize);
+  }
 }
 
 void noteBeyond(const std::string& path, const std::string& what, const CoordBBox& box,

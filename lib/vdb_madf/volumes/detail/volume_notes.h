@@ -23,7 +23,11 @@ std::string voxelText(const VoxelSize& size);
 void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
                    const VolumeOptions& options);
 
-/// Notes that a segmentation which is given voxels of other proportions was made in its own.
+/// Notes that voxels of other proportions are given than the file has, which does not say how large
+/// its voxels are.
+void noteProportions(const std::string& path, const std::array<double, 3>& edges,
+                     const VolumeOptions& options);
+/// The same of a grid; and that a segmentation which is given such voxels was made in its own.
 void noteProportions(const std::string& path, const openvdb::GridBase& grid,
                      const VolumeOptions& options);
 
