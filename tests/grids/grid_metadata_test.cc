@@ -250,3 +250,14 @@ TEST_CASE("grid_metadata: a grid that says nothing gives its transform", "[grid_
   CHECK_FALSE(storedDomain(*to).has_value());
   CHECK(to->indexToWorld(Coord(1, 2, 3)) == Vec3d(1, 2, 3));
 }
+
+TEST_CASE("grid_metadata: labels made of tracked ones know the largest number of a track",
+          "[grid_metadata]") {
+  const auto tracked = Int32Grid::create(0), labels = Int32Grid::create(0);
+  tracked->insertMeta(kLastTrackKey, openvdb::Int64Metadata(9));
+  const auto mask = MaskGrid::create();
+  copyProvenance(*tracked, *labels);
+  copyProvenance(*tracked, *mask);
+  CHECK(labels->metaValue<int64_t>(kLastTrackKey) == 9);
+  CHECK((*mask)[kLastTrackKey] == nullptr);  // segmented, it has grains of its own
+}

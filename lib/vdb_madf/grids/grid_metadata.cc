@@ -154,6 +154,9 @@ void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
        {kDomainMin, kDomainMax, detail::kRegionKey, kVoxelSizeKey, kVoxelEdgesKey, kLengthUnit,
         kSourceKey, kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
     if (const auto value = from[key]) to.insertMeta(key, *value);
+  if (to.isType<Int32Grid>())
+    for (const char* key : {kTrackKey, kLastTrackKey})
+      if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }
 

@@ -14,10 +14,6 @@
 
 namespace vdb_madf {
 
-/// Metadata of tracked labels: the shift or the kind of motion (string), and the largest number
-/// that a grain has had so far (int64).
-inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
-
 /// How grains of two scans are linked.
 struct TrackOptions {
   std::optional<Coord> shift;  ///< of the sample, in voxels, from before to after; absent: is found
