@@ -184,6 +184,7 @@ def test_memory_is_said_and_limited(sample, array):
     (dict(boundary="half"), ValueError, "auto, open, closed"),
     (dict(max_memory="12"), ValueError, "max_memory: 12: give a size with its unit"),
     (dict(threads=-1), ValueError, "threads"),
+    (dict(threads=10**9), ValueError, "threads=1000000000: must be from 0"),
     (dict(threshold=1), ValueError, "only one"),
     (dict(despeckle=-1), ValueError, "despeckle=-1: must be 0 or more"),
     (dict(roi=madf.Cylinder("w")), ValueError, "axis"),

@@ -279,3 +279,31 @@ def test_a_volume_made_of_one_keeps_place_and_region(array):
                         (lambda v: madf.Mask(v, threshold=1), madf.Labels(array).reduce(2))):
         with pytest.warns(UserWarning, match="its place and its region are left behind"):
             kind(other)
+
+
+def test_what_labels_keep_cannot_be_changed_from_outside(labels):
+    with pytest.raises(ValueError, match="read-only"):
+        labels.voxels.sort()
+    with pytest.raises(ValueError, match="read-only"):
+        labels.ids[0] = 7
+    ids = set(labels.ids[:2])
+    assert labels.drop(ids).ids.tolist() == sorted(set(labels.ids) - ids)
+
+
+def test_a_type_in_the_place_of_a_text_is_told(labels, tmp_path):
+    with pytest.raises(TypeError, match="type=<class 'numpy.uint16'>: give a text"):
+        labels.save(tmp_path / "t.tif", type=np.uint16)
+
+
+def test_what_a_volume_leaves_behind_as_an_array_is_told(tmp_path):
+    values = np.zeros((9, 10, 11), np.uint8)
+    values[2:6, :, 3:] = 1
+    header = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 11 10 9\nspacings: 1 1 3\n"
+              "encoding: raw\n\n")
+    (tmp_path / "u.nrrd").write_bytes(header.encode() + values.tobytes())
+    mask = madf.Mask(tmp_path / "u.nrrd", phase=1)
+    with pytest.warns(UserWarning, match="the proportions of its voxels are left behind"):
+        madf.Mask(mask, despeckle=5)
+    closed = madf.segment(values, boundary="closed").labels
+    with pytest.warns(UserWarning, match="its closed faces are left behind"):
+        madf.Mask(closed, range=(1, 9))

@@ -37,7 +37,7 @@ Source = Union[str, os.PathLike[str], ArrayLike3D]
 
 def shown(value: Any) -> str:
     """A value in a message: in a line, however long it is."""
-    if hasattr(value, "shape") and hasattr(value, "dtype"):
+    if hasattr(value, "shape") and hasattr(value, "dtype") and not isinstance(value, type):
         return f"<an array of {value.dtype}, {tuple(value.shape)}>"
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."

@@ -11,14 +11,15 @@ from typing import Callable, Iterator, List, Optional, Union
 
 from . import _core
 
+_MOST_THREADS = 4096
 Progress = Union[Callable[[int, str], object], bool, None]
 
 
 @contextlib.contextmanager
 def calling(progress: Progress, threads: int) -> Iterator[_core.Call]:
     """A call with a function that hears of its progress, a bar (True) or nobody."""
-    if threads < 0:
-        raise ValueError(f"threads={threads}: must be 0 (all) or more")
+    if not 0 <= threads <= _MOST_THREADS:
+        raise ValueError(f"threads={threads}: must be from 0 (all) to {_MOST_THREADS}")
     if progress is None or progress is False:
         yield _core.Call(None, threads)
     elif callable(progress):

@@ -62,11 +62,13 @@ class Labels(Volume):
     def _counted(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
         if self._sizes is None:
             self._sizes = _core.label_sizes(self._grid, _core.Call(None, 0))
+            for values in self._sizes:
+                values.flags.writeable = False  # they are given out, and used again
         return self._sizes
 
     @property
     def ids(self) -> npt.NDArray[np.int32]:
-        """The labels above 0, ascending."""
+        """The labels above 0, ascending; read-only, as `voxels`."""
         return self._counted()[0]
 
     @property
@@ -127,10 +129,11 @@ class Labels(Volume):
     @checked
     def drop(self, ids: _Ids) -> "Labels":
         """All other grains; their labels stay. ValueError for an id that no grain has."""
-        unknown = np.setdiff1d(np.asarray(ids), self.ids)
+        dropped = [int(i) for i in ids]
+        unknown = np.setdiff1d(dropped, self.ids)
         if len(unknown):
-            raise ValueError(f"{unknown[0]} is no grain of these labels")
-        return self.keep(np.setdiff1d(self.ids, np.asarray(ids)))
+            raise ValueError(f"{int(unknown[0])} is no grain of these labels")
+        return self.keep(np.setdiff1d(self.ids, dropped))
 
     @checked
     def edit(self, edits: Union[str, Sequence[str]], *, manifold: Optional["Labels"] = None,

@@ -174,7 +174,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV
     file size_mm,percent_passing (or size_um, size_voxel): in the sample `size_curve_rms_percent`,
     how far each kind of curve is from it between 5 and 95 %.
-    phases: a map of phases of the same shape, or the whole of which the labels were cropped, a file
+    phases: a map of phases of the same shape, of cropped labels that of the whole scan, a file
     or an array: `bridges`, the binder (the voxels of value `binder`, else 1) between grains.
     phases_grid: as intensity_grid.
     stability: of a Segmentation that kept its manifolds: columns `born`, `dies`, `stability` of the
