@@ -81,7 +81,7 @@ void printCrossings(const Crossings& crossings) {
     if (const auto& area = crossings.along[axis].cutArea)
       std::printf("%.4g %%", 100 * *area / crossings.along[axis].section);
     else
-      std::printf("none");
+      std::printf("none (a grain reaches across)");
   }
   std::printf(" of the section\n  bonds conduct      ");
   for (size_t axis = 0; axis < 3; ++axis)
