@@ -18,6 +18,7 @@ const std::string kBar = "fill:rgb(0%,44.705882%,69.803922%)",
 /// Whole grains of diameters 1, 2 ... along z, one that is cut, and bonds along x.
 Measurements measured(int grains, int bonds) {
   Measurements m;
+  m.open = true;
   for (int i = 0; i <= grains; ++i) {
     GrainMeasures grain;
     grain.id = i + 1;
@@ -57,6 +58,9 @@ TEST_CASE("measures_plot: grains that are cut do not count", "[measures_plot]") 
   const std::string whole = measuresPlot(m, "");
   m.grains.back().equivalentDiameter = 1000;
   CHECK((measuresPlot(m, "") == whole));
+  m.open = false;  // then no face cuts any
+  CHECK((measuresPlot(m, "") != whole));
+  m.open = true;
   m.grains.front().equivalentDiameter = 1000;
   CHECK((measuresPlot(m, "") != whole));
 }

@@ -325,3 +325,12 @@ def test_necks_in_a_gray_scan(command, tmp_path):
     labels = madf.segment(noise, threshold=2000.0).labels
     with pytest.warns(UserWarning, match="tell no blur: necks are not measured"):
         madf.measure(labels, gray=noise, sensitivity=5)
+
+
+def test_where_a_grain_reaches_across_nothing_is_cut():
+    halves = np.ones((12, 12, 12), np.int32)
+    halves[:6] = 2
+    sample = madf.measure(halves, crossing=True).sample
+    assert sample["minimum_cut_bonds"][0] == 1
+    for name in ("minimum_cut_bonds", "minimum_cut_area", "minimum_cut_share"):
+        assert np.isnan(sample[name][1:]).all(), name

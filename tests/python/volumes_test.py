@@ -290,6 +290,13 @@ def test_what_labels_keep_cannot_be_changed_from_outside(labels):
     assert labels.drop(ids).ids.tolist() == sorted(set(labels.ids) - ids)
 
 
+def test_a_volume_has_no_parts_to_name(labels):
+    for kind, source in ((madf.Labels, labels), (madf.Mask, madf.Mask(labels, range=(1, 9)))):
+        for part in ("grid", "dataset"):
+            with pytest.raises(ValueError, match=f"{part}: names a part of a file"):
+                kind(source, **{part: "manifold"})
+
+
 def test_a_type_in_the_place_of_a_text_is_told(labels, tmp_path):
     with pytest.raises(TypeError, match="type=<class 'numpy.uint16'>: give a text"):
         labels.save(tmp_path / "t.tif", type=np.uint16)

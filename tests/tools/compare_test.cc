@@ -64,3 +64,23 @@ TEST_CASE("cli: compare says when the grids differ in topology", "[cli]") {
   bench.mustRun("convert a.raw longer.npy --dims 2x2x1 --type uint8");
   CHECK_THAT(bench.run("compare a.npy longer.npy").err, vdb_madf::test::Contains("domains differ"));
 }
+
+TEST_CASE("cli: the dataset is that of each input that has some", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --grid object");
+  bench.mustRun("edit g.vdb h.vdb --drop 2");
+  for (const std::string name : {"g", "h"}) bench.mustRun("export " + name + ".vdb " + name + ".zarr");
+  const auto grains = [&](const std::string& pair) {
+    const Json json = Json::parse(bench.mustRun("compare " + pair + " --json -"));
+    return std::make_pair(json.at("truth_grains").get<int>(), json.at("test_grains").get<int>());
+  };
+  const auto expected = grains("g.vdb h.vdb --truth-grid grain");
+  REQUIRE(expected.first == expected.second + 1);
+  CHECK(grains("g.zarr h.zarr --dataset labels/grain") == expected);
+  CHECK(grains("g.zarr h.vdb --dataset labels/grain") == expected);
+  CHECK(grains("g.vdb h.zarr --truth-grid grain --dataset labels/grain") == expected);
+  refuses(bench, kFailed, "compare g.vdb h.vdb --truth-grid grain --dataset labels/grain",
+          {"--dataset is for Zarr and HDF5"});
+  refuses(bench, kFailed, "track g.zarr h.zarr --dataset labels/none", {"h.zarr", "labels/none"});
+}

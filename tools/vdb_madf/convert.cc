@@ -150,7 +150,12 @@ void copyVdb(const ConvertArguments& o, const Common& common) {
 
 /// Of a folder of slabs that becomes an image.
 void copySlabs(const ConvertArguments& o, const Common& common) {
-  const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+  LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+  if (o.boundary != "auto") {
+    const Int32Grid::Ptr about = labels.about->deepCopy();
+    setBoundary(*about, parseBoundary(o.boundary));
+    labels.about = about;
+  }
   writeSlabsAsImage(o.out, labels, outputType(o), o.input.path, common);
 }
 

@@ -5,6 +5,7 @@
 
 #include "outputs.h"
 #include "vdb_madf/files/standard_streams.h"
+#include "vdb_madf/images/open_image.h"
 
 namespace vdb_madf::tools {
 
@@ -16,6 +17,11 @@ void parsePair(InputOptions& first, InputOptions& second, const std::vector<std:
   second.bigEndian = first.bigEndian;
   second.bytesToSkip = first.bytesToSkip;
   second.size = first.size;
+  second.dataset = first.dataset;
+  // It is for those that have datasets; if none has, reading says so.
+  if (hasDatasets(first.path) || hasDatasets(second.path))
+    for (InputOptions* input : {&first, &second})
+      if (!hasDatasets(input->path)) input->dataset.clear();
   for (InputOptions* input : {&first, &second})
     if (!hasRawEnding(input->path) && !isStandardInput(input->path)) input->size.reset();
 }

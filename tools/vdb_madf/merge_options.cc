@@ -24,10 +24,10 @@ void MergeArguments::add(Verb verb) {
               "of the tests: merge balls that meet at a cosine below T, -1..1 (default -0.9)")
       .typeName("T");
   verb.option("--delta", delta,
-              "of the tests: merge where the neck is under K/8 voxel narrower (default 2)")
+              "of both and neck: merge where the neck is under K/8 voxel narrower (default 2)")
       .typeName("K");
   verb.option("--adjacency", adjacency,
-              "what the angle test pairs: manifold, cell (default manifold)")
+              "of both and angle: what the test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
   addMinGrain(verb, minGrain);
 }

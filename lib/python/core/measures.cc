@@ -144,7 +144,9 @@ void addCrossings(const Crossings& crossings, const TableUnit& unit, py::dict& d
   add("minimum_cut_area", [&](const Crossing& c) { return orNan(c.cutArea) * unit.area(); });
   units["minimum_cut_area"] = powerOf(unit, 2);
   add("minimum_cut_share", [](const Crossing& c) { return orNan(c.cutArea) / c.section; });
-  add("minimum_cut_bonds", [](const Crossing& c) { return c.cutBonds; });
+  add("minimum_cut_bonds", [](const Crossing& c) {
+    return c.cutArea ? py::object(py::int_(c.cutBonds)) : py::float_(orNan(c.cutArea));
+  });
   add("bond_conductivity", [](const Crossing& c) { return c.conductivity; });
   dict["bond_conductivity_tensor"] = tensor(crossings.conductivity);
 }

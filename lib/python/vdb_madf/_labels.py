@@ -37,10 +37,10 @@ class Labels(Volume):
     def __init__(self, source: Source, *, voxel_size: Optional[str] = None,
                  dataset: Optional[str] = None, grid: Optional[str] = None,
                  progress: Progress = None, threads: int = 0) -> None:
+        refuse_parts(source, dataset=dataset, grid=grid)
         if isinstance(source, Labels):
             self._grid = same_grid(source, voxel_size)
             return
-        refuse_parts(source, dataset=dataset, grid=grid)
         options = _core.VolumeOptions()
         edges = edges_of(source, voxel_size)
         if edges is not None:

@@ -49,6 +49,7 @@ class Mask(Volume):
                  roi: Optional[Region] = None, crop: Optional[Box] = None,
                  domain: Optional[Box] = None, dataset: Optional[str] = None,
                  grid: Optional[str] = None, progress: Progress = None, threads: int = 0) -> None:
+        refuse_parts(source, dataset=dataset, grid=grid)
         chosen = (phase, threshold, range, roi, crop, domain)
         if isinstance(source, Mask) and not (invert or median or smooth or despeckle) and all(
                 choice is None for choice in chosen):
@@ -59,7 +60,6 @@ class Mask(Volume):
             median=median, smooth=smooth, despeckle=despeckle,
             voxel_size=edges_of(source, voxel_size), roi=roi, crop=crop, domain=domain,
             dataset=dataset, grid=grid, of_array=not is_path(source))
-        refuse_parts(source, dataset=dataset, grid=grid)
         with calling(progress, threads) as call:
             chosen = (phase, threshold, range)
             if all(choice is None for choice in chosen) and not smooth and _is_bool(source):

@@ -186,6 +186,18 @@ std::unique_ptr<ImageReader> openFolder(const std::string& path, const std::stri
 
 }  // namespace
 
+bool hasDatasets(const std::string& path) {
+  std::error_code error;
+  if (isStandardInput(path)) return false;
+  if (isFolder(path)) return detail::isZarrFolder(path);
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe is read once
+  try {
+    return isHdf5(detail::InputFile(path).head(kHeadBytes));
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
 std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optional<RawLayout>& raw,
                                        const std::string& dataset) {
   if (!raw && !isStandardInput(path) && isFolder(path)) return openFolder(path, dataset);

@@ -35,6 +35,10 @@ std::unique_ptr<ImageReader> openImage(const std::string& path,
                                        const std::optional<RawLayout>& raw = std::nullopt,
                                        const std::string& dataset = "");
 
+/// True for what has several images to choose from by name: a Zarr folder, an HDF5 file. False if
+/// it cannot be read, or is standard input.
+bool hasDatasets(const std::string& path);
+
 /// True if HDF5 was there when this was built, and is read and written.
 bool readsHdf5();
 

@@ -171,11 +171,12 @@ std::string measuresPlot(const Measurements& m, const std::string& title, PlotTy
   const std::string unit = own.name == "voxel" ? "voxels" : own.name;
   Weighted diameters, volumes, sphericities, coordinations, radii;
   Directions axes, normals;
+  const auto isCut = [&](const GrainMeasures& grain) { return m.open && grain.atDomainFace; };
   double volume = 0;
   for (const GrainMeasures& grain : m.grains)
-    if (!grain.atDomainFace) volume += grain.volume;
+    if (!isCut(grain)) volume += grain.volume;
   for (const GrainMeasures& grain : m.grains) {
-    if (grain.atDomainFace) continue;
+    if (isCut(grain)) continue;
     diameters.add(length * grain.equivalentDiameter, 1);
     volumes.add(length * grain.equivalentDiameter, grain.volume / volume);
     if (grain.sphericity) sphericities.add(*grain.sphericity, 1);

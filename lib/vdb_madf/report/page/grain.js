@@ -59,8 +59,7 @@ function describe(sample, selection, row) {
     list.append(make('dt', {}, sample.titleOf(name)),
       make('dd', {}, `${written(sample.grains.column(name)[row])} ${unit}`));
   }
-  const atFace = sample.grains.column('at_domain_face')[row];
-  return [make('h3', {}, `Grain ${sample.ids[row]}${atFace ? ', cut by a face of the scan' : ''}`),
+  return [make('h3', {}, `Grain ${sample.ids[row]}${sample.isCut(row) ? ', cut by a face of the scan' : ''}`),
     ...partList(sample, selection, row), list, ...bondList(sample, selection, row)];
 }
 

@@ -187,12 +187,18 @@ export class Sample {
       density: numbers.bulk_density_kg_per_m3 * share };
   }
 
+  /// Beyond closed faces is nothing, so that grains there are whole.
+  isCut(row) {
+    return this.numbers.boundary !== 'closed' && this.grains.column('at_domain_face')[row] !== 0;
+  }
+
   columnOf(kind, name) {
     return this[kind].columns.find((column) => column.name === name);
   }
 
   /// "equivalent diameter", and with the unit.
   titleOf(name) {
+    if (name === 'at_domain_face' && this.numbers.boundary === 'closed') return 'at a face';
     return titles[name] || name.replace(/_/g, ' ');
   }
   /// What it means; empty where the title says that.

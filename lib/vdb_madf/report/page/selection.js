@@ -161,10 +161,8 @@ export class Selection {
     this.visible.fill(this.only ? 0 : 1);
     for (const row of this.onlyRows) this.visible[row] = 1;
     restrict(this.visible, grains, this.filters.grains);
-    if (this.insideOnly) {
-      const atFace = grains.column('at_domain_face');
-      for (let row = 0; row < grains.rows; ++row) if (atFace[row]) this.visible[row] = 0;
-    }
+    if (this.insideOnly)
+      for (let row = 0; row < grains.rows; ++row) if (this.sample.isCut(row)) this.visible[row] = 0;
     this.passingBonds.fill(1);
     restrict(this.passingBonds, bonds, this.filters.bonds);
     for (let bond = 0; bond < bonds.rows; ++bond)
