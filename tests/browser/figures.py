@@ -42,7 +42,8 @@ def check_tiles(page, grains, bonds):
              "window.report.selection.setFilter('bonds', 'faces', [arguments[0], Infinity])", least)
     mean = 2 * sum(count >= least for count in faces) / len(grains)
     shown = page.find("#numbers").find_elements("css selector", ".tile")[2].text
-    demand(abs(float(shown.split()[0]) - mean) < 0.006 * mean, f"bonds a grain: {shown}, not {mean}")
+    demand(abs(float(shown.split()[0]) - mean) < 0.006 * mean,
+           f"bonds a grain: {shown}, not {mean}")
     page.run("window.report.selection.clearFilters()")
     demand("of all" not in page.find("#numbers").text, "without filters numbers are those of all")
 

@@ -84,7 +84,7 @@ TEST_CASE("measure_necks: grains that were dropped from the labels do not count"
       }
   constexpr double kBlur = 0.8;
   smoothedImage(imageOf(size, values), kBlur)->read(0, size.z, values.data());
-  const ScanBlur blur{1000, 3000, 0.01, kBlur};
+  const ScanBlur blur{3000, 1000, 0.01, kBlur};
   const auto neckOf = [&](bool all, float threshold) {
     const auto labels = drawLabels(box, [&](const Vec3d& p) {
       const size_t at = size_t((p.z() * size.y + p.y()) * size.x + p.x());

@@ -320,6 +320,7 @@ TEST_CASE("evolve: the region and the boundary are those of before", "[evolve]")
   setDomain(*labels, Domain(round));
   setBoundary(*labels, Boundary::closed);
   EvolveOptions options;
+  options.steps = 1;
   options.drift = {5, 0, 0};
   const Evolution evolution(*labels, options);
   const EvolvedStep before = evolution.after(0), after = evolution.after(1);

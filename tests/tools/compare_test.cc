@@ -70,7 +70,8 @@ TEST_CASE("cli: the dataset is that of each input that has some", "[cli]") {
   bench.mustRun(kSpheres + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb --grid object");
   bench.mustRun("edit g.vdb h.vdb --drop 2");
-  for (const std::string name : {"g", "h"}) bench.mustRun("export " + name + ".vdb " + name + ".zarr");
+  for (const std::string name : {"g", "h"})
+    bench.mustRun("export " + name + ".vdb " + name + ".zarr");
   const auto grains = [&](const std::string& pair) {
     const Json json = Json::parse(bench.mustRun("compare " + pair + " --json -"));
     return std::make_pair(json.at("truth_grains").get<int>(), json.at("test_grains").get<int>());

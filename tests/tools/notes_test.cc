@@ -87,8 +87,10 @@ TEST_CASE("cli: that an image does not say closed is said", "[cli]") {
 
 TEST_CASE("cli: cubes in the place of a file's proportions are said", "[cli]") {
   const Bench bench;
-  bench.write("u.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 3\n"
-                        "encoding: raw\n\n" + std::string(64, '\1'));
+  bench.write("u.nrrd",
+              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 3\n"
+              "encoding: raw\n\n" +
+                  std::string(32, '\1') + std::string(32, '\0'));
   bench.mustRun("convert u.nrrd u.vdb");
   bench.mustRun("convert u.nrrd l.vdb --labels");
   const std::vector<std::string> says{"as 1 to 1 to 3; 10 um was given"};

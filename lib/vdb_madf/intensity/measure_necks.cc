@@ -33,13 +33,13 @@ using openvdb::Vec3d;
 using FloatTree = FloatGrid::TreeType;
 
 constexpr size_t kBondsTogether = 8;
-constexpr double kFlank = 3;        // voxels around a bond that tell its normal
-constexpr double kMaxReach = 64;    // of a section, along it
-constexpr double kBlursOfRim = 3;   // from a surface on all is inside or outside
-constexpr double kRim = 0.7;        // voxels, and that many blurs
-constexpr int kEnoughVoxels = 100;  // for a mean of their own
+constexpr double kFlank = 3;          // voxels around a bond that tell its normal
+constexpr double kMaxReach = 64;      // of a section, along it
+constexpr double kBlursOfRim = 3;     // from a surface on all is inside or outside
+constexpr double kRim = 0.7;          // voxels, and that many blurs
+constexpr int kEnoughVoxels = 100;    // for a mean of their own
 constexpr size_t kLeastUnknown = 27;  // voxels far from all labels that make a grain without one
-constexpr double kLeastArea = 7;    // voxel faces of a confirmed neck
+constexpr double kLeastArea = 7;      // voxel faces of a confirmed neck
 // A neck is not known by an error of so many voxel faces and so much of the bond's area, and if its
 // area is so many times that of the bond: blur makes bonds larger, not smaller.
 constexpr double kMostError = 21, kMostErrorShare = 0.35, kMostGrowth = 3;

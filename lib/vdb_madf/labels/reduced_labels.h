@@ -11,8 +11,9 @@ namespace vdb_madf {
 // Label grids made smaller by a whole factor: coarse voxel (i,j,k) stands for the fine voxels
 // factor * i .. factor * i + factor - 1 along each axis, and its center lies at their center in the
 // world. Domain and voxel size follow (of a domain that is no box: the coarse voxels of which at
-// least half of what its box has of them lies in it); provenance is carried over. Labels are the active voxels (tiles included)
-// of positive value. Factor 1 changes nothing but the topology: no tiles.
+// least half of what its box has of them lies in it); provenance is carried over. Labels are the
+// active voxels (tiles included) of positive value. Factor 1 changes nothing but the topology: no
+// tiles.
 
 constexpr int kMaxReduction = 256;
 

@@ -183,8 +183,7 @@ Int32Tree::ConstPtr grownTree(const Int32Tree::ConstPtr& tree, double length,
                       if ((own > 0) == (length > 0) || !isSeen(p)) return own;
                       for (const auto& [squared, step] : steps) {
                         const int32_t label = labelAt(labels, p + step);
-                        if (length > 0 ? label > 0
-                                       : label == 0 && (isClosed || isSeen(p + step)))
+                        if (length > 0 ? label > 0 : label == 0 && (isClosed || isSeen(p + step)))
                           return label;
                       }
                       return own;

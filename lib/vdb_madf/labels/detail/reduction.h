@@ -20,8 +20,8 @@ namespace vdb_madf::detail {
 /// Divides, and rounds towards minus infinity.
 Coord floorDiv(const Coord& a, int b);
 
-/// The coarse voxels that a box meets, or those of which a region holds half or more of what lies in
-/// its box.
+/// The coarse voxels that a box meets, or those of which a region holds half or more of what lies
+/// in its box.
 /// @throw InvalidInput if there are none.
 Domain reducedDomain(const Domain& domain, int factor);
 

@@ -176,8 +176,9 @@ std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
   const ScanPart part = chosenPart(path, options, extent, interrupter);
   if (storedBoundary(grid) == Boundary::closed && extent.domain && *extent.domain != part.domain &&
       options.note)
-    options.note(path + ": is closed, and so is the part of it, whose faces cut grains: say that "
-                        "its boundary is open if these go on there",
+    options.note(path +
+                     ": is closed, and so is the part of it, whose faces cut grains: say that "
+                     "its boundary is open if these go on there",
                  NoteAbout::file);
   setDomain(grid, part.domain);
   return part;

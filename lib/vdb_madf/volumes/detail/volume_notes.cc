@@ -85,12 +85,12 @@ void noteProportions(const std::string& path, const std::array<double, 3>& edges
       haveProportions(*options.voxelSize, edges))
     return;
   const double least = *std::min_element(edges.begin(), edges.end());
-  options.note(fmt::format("{}: the file says that the edges of a voxel are as {} to {} to {}; {} "
-                           "was given and is taken",
-                           path, generalDecimal(edges[0] / least, 4),
-                           generalDecimal(edges[1] / least, 4), generalDecimal(edges[2] / least, 4),
-                           voxelText(*options.voxelSize)),
-               NoteAbout::voxelSize);
+  options.note(
+      fmt::format("{}: the file says that the edges of a voxel are as {} to {} to {}; {} "
+                  "was given and is taken",
+                  path, generalDecimal(edges[0] / least, 4), generalDecimal(edges[1] / least, 4),
+                  generalDecimal(edges[2] / least, 4), voxelText(*options.voxelSize)),
+      NoteAbout::voxelSize);
 }
 
 void noteProportions(const std::string& path, const openvdb::GridBase& grid,

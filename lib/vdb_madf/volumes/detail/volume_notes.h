@@ -27,7 +27,7 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
 /// its voxels are.
 void noteProportions(const std::string& path, const std::array<double, 3>& edges,
                      const VolumeOptions& options);
-/// The same of a grid; and that a segmentation which is given such voxels was made in its own.
+/// Notes this of a grid, and of a segmentation that it was made in its own voxels.
 void noteProportions(const std::string& path, const openvdb::GridBase& grid,
                      const VolumeOptions& options);
 
