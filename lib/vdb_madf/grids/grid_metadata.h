@@ -21,8 +21,8 @@ inline constexpr char kVoxelSizeKey[] = "madf_voxel_size_m";    ///< of cubes (d
 inline constexpr char kVoxelEdgesKey[] = "madf_voxel_edges_m";  ///< of other voxels (Vec3d)
 inline constexpr char kSourceKey[] = "madf_source";      ///< where a grid comes from (string)
 inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed": see storedBoundary
-/// Of tracked labels: the shift or the kind of motion (string), and the largest number that a grain
-/// has had so far (int64).
+/// How labels were tracked: the shift or the kind of motion (string), and the largest number that a
+/// grain has had so far (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
 /// The image domain B of a grid: the box, both corners inclusive, in the metadata
@@ -69,8 +69,8 @@ std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata);
 /// Copies all metadata but the name, and the transform, from one grid to another.
 void copyMetadata(const openvdb::GridBase& from, openvdb::GridBase& to);
 
-/// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to another,
-/// and from labels to labels what was tracked.
+/// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to
+/// another, and to labels how they were tracked.
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to);
 
 }  // namespace vdb_madf

@@ -27,7 +27,7 @@ struct Selection {
   }
   static Selection range(double low, double high) { return {Kind::range, low, high, false}; }
 
-  /// The same for values that are float32, where 0.7 is the number nearest to 0.7, as in NumPy.
+  /// For values that are float32: there 0.7 is the number nearest to 0.7, as in NumPy.
   Selection ofFloats() const {
     const auto nearest = [](double number) {
       return number >= std::numeric_limits<float>::lowest() &&

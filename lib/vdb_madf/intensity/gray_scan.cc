@@ -109,8 +109,8 @@ bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
          domain->box().min() == box.min();
 }
 
-/// Whether labels of a part of this box lie elsewhere in the world than at their indices, as reduced
-/// and resampled ones do: those count voxels of their own.
+/// Whether labels of a part of this box lie elsewhere in the world than at their indices, as
+/// reduced and resampled ones do: those count voxels of their own.
 bool countsAnew(const CoordBBox& box, const openvdb::GridBase& about) {
   const auto domain = storedDomain(about);
   return domain && domain->box() != box && box.isInside(domain->box()) &&

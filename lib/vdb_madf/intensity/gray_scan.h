@@ -37,8 +37,8 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample);
 /// 0.1 % (kMaxEdgeRatio).
 /// @param box, voxels of the scan
 /// @param about a grid with the domain and the voxel size of the labels
-/// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond labels that do
-///   not say where in it they lie: those of an image, of an array or of another program, and
+/// @throw InvalidInput, one line that begins with the path, if the scan goes on beyond labels that
+///   do not say where in it they lie: those of an image, of an array or of another program, and
 ///   reduced and resampled ones, of which it is not known that the scan has the same voxels
 std::string noteOnScan(const std::string& path, const CoordBBox& box,
                        const std::optional<VoxelSize>& voxels, const openvdb::GridBase& about);
