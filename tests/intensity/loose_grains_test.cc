@@ -57,12 +57,12 @@ TEST_CASE("measure_necks: grains without a bond tell whether they are dark, too"
 
 TEST_CASE("measure_necks: grains that were dropped from the labels do not count",
           "[measure_necks]") {
-  // Three balls that meet in one place, each pair with a neck of radius 6.
+  // Three balls, each of which touches the others: the first two by a neck of radius 6.
   constexpr double kRadius = 12, kNeck = 6;
   const double side = 2 * std::sqrt(kRadius * kRadius - kNeck * kNeck);
   const Vec3d centers[3] = {
-      {16.2, 16.4, 20.1}, {16.2 + side, 16.4, 20.1}, {16.2 + side / 2, 16.4 + 0.9 * side, 20.1}};
-  const CoordBBox box(Coord(0), Coord(53, 51, 40));
+      {16.2, 16.4, 20.1}, {16.2 + side, 16.4, 20.1}, {16.2 + side / 2, 16.4 + 0.95 * side, 20.1}};
+  const CoordBBox box(Coord(0), Coord(53, 55, 40));
   const auto nearestTo = [&](const Vec3d& p) {
     int nearest = 0;
     for (int ball = 1; ball < 3; ++ball)
@@ -103,7 +103,7 @@ TEST_CASE("measure_necks: grains that were dropped from the labels do not count"
     const Neck among = neckOf(true, threshold), alone = neckOf(false, threshold);
     CHECK(among.confirmed);
     CHECK(alone.confirmed);
-    CHECK(among.area == Approx(M_PI * kNeck * kNeck).epsilon(0.12));
-    CHECK(alone.area == Approx(among.area).epsilon(0.06));
+    CHECK(among.area == Approx(M_PI * kNeck * kNeck).epsilon(0.1));
+    CHECK(alone.area == Approx(among.area).epsilon(0.08));
   }
 }
