@@ -83,5 +83,6 @@ TEST_CASE("cli: the dataset is that of each input that has some", "[cli]") {
   CHECK(grains("g.vdb h.zarr --truth-grid grain --dataset labels/grain") == expected);
   refuses(bench, kFailed, "compare g.vdb h.vdb --truth-grid grain --dataset labels/grain",
           {"--dataset is for Zarr and HDF5"});
-  refuses(bench, kFailed, "track g.zarr h.zarr --dataset labels/none", {"zarr: there is no Zarr array 'labels/none'"});
+  refuses(bench, kFailed, "track g.zarr h.zarr --dataset labels/none",
+          {"zarr: there is no Zarr array 'labels/none'"});
 }
