@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,10 +16,9 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/images/detail/header_checks.h"
-#include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/grains_in_scan.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
+#include "vdb_madf/intensity/detail/scan_around.h"
 #include "vdb_madf/intensity/detail/section_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 
@@ -85,6 +83,17 @@ Block<int32_t> labelsIn(const Int32Tree& tree, const CoordBBox& box) {
   return copyOf<int32_t>(tree, box, [](const Int32Tree::LeafNodeType& leaf, openvdb::Index i) {
     return detail::labelAt(leaf, leaf.buffer().data(), i);
   });
+}
+
+/// Calls take(q), which may add to the voxels, for all face neighbors of voxels within the box.
+template <typename Take>
+void spread(std::vector<Coord>& voxels, const CoordBBox& box, const Take& take) {
+  for (size_t next = 0; next < voxels.size(); ++next)
+    for (int side = 0; side < 6; ++side) {
+      Coord q = voxels[next];
+      q[side / 2] += side % 2 ? 1 : -1;
+      if (box.isInside(q)) take(q);
+    }
 }
 
 CoordBBox around(const Vec3d& center, const Vec3d& halves) {
@@ -180,15 +189,7 @@ class NeckMeter {
     CoordBBox seeds = around(section.center, Vec3d(section.radius + 2 * kSeed));
     seeds.intersect(labels.box);
     for (auto p = seeds.begin(); p; ++p) tryAt(*p, kSeed, section.radius + kSeed);
-    while (!open.empty()) {
-      const Coord p = open.back();
-      open.pop_back();
-      for (int side = 0; side < 6; ++side) {
-        Coord q = p;
-        q[side / 2] += side % 2 ? 1 : -1;
-        if (labels.box.isInside(q)) tryAt(q, kHeight, section.reach);
-      }
-    }
+    spread(open, labels.box, [&](const Coord& q) { tryAt(q, kHeight, section.reach); });
     return own;
   }
 
@@ -252,16 +253,12 @@ class NeckMeter {
     std::vector<Coord> piece;
     for (auto p = gray.box.begin(); p; ++p) {
       if (!isOpen[gray.at(*p)]) continue;
-      piece.assign(1, *p);
-      isOpen[gray.at(*p)] = 0;
-      for (size_t next = 0; next < piece.size(); ++next)
-        for (int side = 0; side < 6; ++side) {
-          Coord q = piece[next];
-          q[side / 2] += side % 2 ? 1 : -1;
-          if (!gray.box.isInside(q) || !isOpen[gray.at(q)]) continue;
-          isOpen[gray.at(q)] = 0;
-          piece.push_back(q);
-        }
+      piece.clear();
+      const auto take = [&](const Coord& q) {
+        if (std::exchange(isOpen[gray.at(q)], uint8_t(0))) piece.push_back(q);
+      };
+      take(*p);
+      spread(piece, gray.box, take);
       if (piece.size() < kLeastUnknown) continue;
       anyFar = true;
       for (const Coord& q : piece) isFar[gray.at(q)] = 1;
@@ -417,55 +414,6 @@ std::vector<CoordBBox> boxesOfSome(const Int32Tree& labels, const CoordBBox& kno
   return boxes;
 }
 
-/// The scan's values in the leaf nodes that the boxes touch.
-FloatTree::Ptr readAround(const std::vector<CoordBBox>& boxes, GrayScan& scan,
-                          Interrupter* interrupter) {
-  auto tree = std::make_shared<FloatTree>(0.0F);
-  for (const CoordBBox& part : boxes)
-    detail::forEachLeafOrigin(part, [&](const Coord& origin) { tree->touchLeaf(origin); });
-  std::map<int, std::vector<FloatTree::LeafNodeType*>> layers;
-  for (auto leaf = tree->beginLeaf(); leaf; ++leaf)
-    layers[leaf->origin().z()].push_back(leaf.getLeaf());
-  const CoordBBox box = scan.box();
-  const Coord size = box.dim();
-  std::vector<char> bytes(size_t(detail::sliceBytes(scan.image->info())) *
-                          size_t(std::min(8, size.z())));
-  int done = 0;
-  for (const auto& layer : layers) {
-    const int z = layer.first;
-    const std::vector<FloatTree::LeafNodeType*>& leaves = layer.second;
-    if (interrupter && interrupter->wasInterrupted(done++ * 100 / int(layers.size())))
-      throw Interrupted();
-    const int first = std::max(z, box.min().z()), last = std::min(z + 7, box.max().z());
-    scan.image->read(first - box.min().z(), last - first + 1, bytes.data());
-    detail::withSampleType(scan.image->info().type, [&](auto type) {
-      const auto* samples = reinterpret_cast<const decltype(type)*>(bytes.data());
-      for (auto* leaf : leaves) {
-        CoordBBox part = leaf->getNodeBoundingBox();
-        part.intersect(box);
-        for (auto p = part.begin(); p; ++p) {
-          const Coord from = *p - Coord(box.min().x(), box.min().y(), first);
-          leaf->setValueOnly(
-              *p, float(samples[(size_t(from.z()) * size_t(size.y()) + size_t(from.y())) *
-                                    size_t(size.x()) +
-                                size_t(from.x())]));
-        }
-      }
-    });
-  }
-  return tree;
-}
-
-/// What a scan shows outside of a region belongs to nothing known: NaN.
-void forgetOutside(const MaskTree& region, FloatTree& gray) {
-  for (auto leaf = gray.beginLeaf(); leaf; ++leaf) {
-    const auto* inside = region.probeConstLeaf(leaf->origin());
-    const bool all = !inside && region.isValueOn(leaf->origin());
-    for (openvdb::Index i = 0; !all && i < FloatTree::LeafNodeType::SIZE; ++i)
-      if (!inside || !inside->isValueOn(i)) leaf->setValueOnly(i, NAN);
-  }
-}
-
 }  // namespace
 
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
@@ -486,8 +434,8 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
   const std::vector<Section> sections = sectionsOf(*tree, measured, known, blur.sigma, &framing);
   const auto domain = storedDomain(labels);
   const auto grayIn = [&](const std::vector<CoordBBox>& boxes, Interrupter* part) {
-    FloatTree::Ptr gray = readAround(boxes, scan, part);
-    if (domain && !domain->isBox()) forgetOutside(*domain->region(), *gray);
+    FloatTree::Ptr gray = detail::readAround(boxes, scan, part);
+    if (domain && !domain->isBox()) detail::forgetOutside(*domain->region(), *gray);
     return gray;
   };
   const auto insideBy = [&](const FloatTree& gray) {
