@@ -21,6 +21,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/ball_steps.h"
+#include "vdb_madf/grids/detail/cut_to_domain.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
@@ -347,14 +348,9 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
                                    broken, options_.gap, interrupter));
   const auto whole = labelSizes(*result.labels, interrupter);
   if (domain_) {
-    Int32Tree& tree = result.labels->tree();
-    tree.clip(domain_->box());
-    if (!domain_->isBox()) {
-      tree.topologyIntersection(*domain_->region());
-      for (auto value = tree.beginValueOff(); value; ++value) value.setValue(0);
-    }
-    openvdb::tools::pruneInactive(tree);
-    setDomain(*result.labels, *domain_);
+    detail::cutToDomain(*domain_, *result.labels);
+    for (auto value = result.labels->beginValueOff(); value; ++value) value.setValue(0);
+    openvdb::tools::pruneInactive(result.labels->tree());
   }
   auto within = labelSizes(*result.labels, interrupter);
   for (EvolvedGrain& grain : result.grains) {

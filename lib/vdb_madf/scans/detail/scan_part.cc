@@ -3,12 +3,11 @@
 
 #include "vdb_madf/scans/detail/scan_part.h"
 
-#include <openvdb/tools/Prune.h>
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/grids/detail/cut_to_domain.h"
 #include "vdb_madf/grids/detail/mask_sets.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/header_checks.h"
@@ -36,14 +35,7 @@ int64_t cut(const ScanPart& part, Grid& grid) {
   auto& tree = grid.tree();
   if (part.box != CoordBBox::inf()) tree.clip(part.box);
   const auto before = tree.activeVoxelCount();
-  CoordBBox active;
-  if (tree.evalActiveVoxelBoundingBox(active) && !part.domain.box().isInside(active))
-    tree.clip(part.domain.box());
-  if (!part.domain.isBox()) {
-    tree.topologyIntersection(*part.domain.region());
-    openvdb::tools::pruneInactive(tree);
-  }
-  setDomain(grid, part.domain);
+  cutToDomain(part.domain, grid);
   return int64_t(before - tree.activeVoxelCount());
 }
 
