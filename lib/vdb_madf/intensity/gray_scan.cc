@@ -102,19 +102,16 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample) {
 
 namespace {
 
-/// Whether a scan goes on beyond labels that begin where it does.
-bool goesOn(const CoordBBox& box, const openvdb::GridBase& about) {
+/// The domain of labels of a part of this box; none if they are of all of it, or of something else.
+std::optional<Domain> partOf(const CoordBBox& box, const openvdb::GridBase& about) {
   const auto domain = storedDomain(about);
-  return domain && domain->isBox() && domain->box() != box && box.isInside(domain->box()) &&
-         domain->box().min() == box.min();
+  return domain && domain->box() != box && box.isInside(domain->box()) ? domain : std::nullopt;
 }
 
-/// Whether labels of a part of this box lie elsewhere in the world than at their indices, as
-/// reduced and resampled ones do: those count voxels of their own.
-bool countsAnew(const CoordBBox& box, const openvdb::GridBase& about) {
-  const auto domain = storedDomain(about);
-  return domain && domain->box() != box && box.isInside(domain->box()) &&
-         about.transform().indexToWorld(openvdb::Vec3d(0)) != openvdb::Vec3d(0);
+/// Whether labels lie elsewhere in the world than at their indices, as reduced and resampled ones
+/// do: those count voxels of their own.
+bool countsAnew(const openvdb::GridBase& about) {
+  return about.transform().indexToWorld(openvdb::Vec3d(0)) != openvdb::Vec3d(0);
 }
 
 }  // namespace
@@ -122,17 +119,18 @@ bool countsAnew(const CoordBBox& box, const openvdb::GridBase& about) {
 std::string noteOnScan(const std::string& path, const CoordBBox& box,
                        const std::optional<VoxelSize>& voxels, const openvdb::GridBase& about) {
   std::string note;
+  const auto part = partOf(box, about);
   const auto own = storedVoxelSize(about);
   const bool areSameVoxels = voxels && own && !detail::haveOtherEdges(*voxels, *own);
-  if (!areSameVoxels && countsAnew(box, about))
+  if (part && !areSameVoxels && countsAnew(about))
     throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
-                       detail::sizeAndPlace(boxOf(about)) +
+                       detail::sizeAndPlace(part->box()) +
                        ", count voxels of their own, as reduced and resampled ones do: give the "
                        "scan cropped and resampled as they were, or take the labels before that");
-  if (goesOn(box, about)) {
+  if (part && part->isBox() && part->box().min() == box.min()) {
     if (!grainCount(about))
       throw InvalidInput(path + ": has " + detail::sizeAndPlace(box) + ", and the labels, of " +
-                         detail::sizeAndPlace(boxOf(about)) +
+                         detail::sizeAndPlace(part->box()) +
                          ", do not say where in it they were cropped: give the scan cropped as "
                          "they were");
     note =
