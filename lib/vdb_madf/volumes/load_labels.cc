@@ -62,8 +62,7 @@ Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& option
   detail::giveDomain(*labels, path, options);
   if (const auto part = detail::partOf(*labels, path, options, interrupter))
     detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labeled voxel", options);
-  detail::noteVoxelSize(path, storedVoxelSize(*labels), options);
-  detail::noteProportions(path, *labels, options);
+  detail::noteVoxelSize(path, *labels, options);
   return labels;
 }
 

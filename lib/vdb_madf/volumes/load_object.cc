@@ -33,8 +33,7 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   const auto part = detail::partOf(*grid, path, options, interrupter);
   const MaskGrid::Ptr object = objectMask(*grid, options.selection);
   if (part) detail::noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
-  detail::noteVoxelSize(path, storedVoxelSize(*object), options);
-  detail::noteProportions(path, *object, options);
+  detail::noteVoxelSize(path, *object, options);
   despeckleObject(*object, options.gray.despeckle, interrupter);
   return object;
 }
@@ -104,8 +103,7 @@ MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& option
     takeLayers(slab->tree(), take);
   }
   if (share.parts == 1) detail::noteLeftOut(path, leftOut, "object voxel", options);
-  detail::noteVoxelSize(path, storedVoxelSize(*object), options);
-  detail::noteProportions(path, *object, options);
+  detail::noteVoxelSize(path, *object, options);
   return object;
 }
 

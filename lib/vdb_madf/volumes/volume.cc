@@ -63,8 +63,7 @@ std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
 }  // namespace detail
 
 void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
-  detail::noteVoxelSize(path, storedVoxelSize(grid), options);
-  detail::noteProportions(path, grid, options);
+  detail::noteVoxelSize(path, grid, options);
   detail::naming(path, "", [&] { detail::giveDomain(grid, path, options); });
   detail::giveVoxelSize(grid, options);
 }

@@ -93,13 +93,15 @@ void noteProportions(const std::string& path, const std::array<double, 3>& edges
       NoteAbout::voxelSize);
 }
 
-void noteProportions(const std::string& path, const openvdb::GridBase& grid,
-                     const VolumeOptions& options) {
+void noteVoxelSize(const std::string& path, const openvdb::GridBase& grid,
+                   const VolumeOptions& options) {
   if (!options.note || !options.voxelSize) return;
+  const auto own = storedVoxelSize(grid);
+  noteVoxelSize(path, own, options);
   const openvdb::Vec3d size = grid.voxelSize();
   const std::array<double, 3> edges{size[0], size[1], size[2]};
   if (!grid["madf_gamma"]) {
-    if (!storedVoxelSize(grid)) noteProportions(path, edges, options);
+    if (!own) noteProportions(path, edges, options);
   } else if (!haveProportions(*options.voxelSize, edges)) {
     options.note(path +
                      ": was segmented in voxels of other proportions, which give other grains: "

@@ -27,9 +27,9 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
 /// its voxels are.
 void noteProportions(const std::string& path, const std::array<double, 3>& edges,
                      const VolumeOptions& options);
-/// Notes this of a grid, and of a segmentation that it was made in its own voxels.
-void noteProportions(const std::string& path, const openvdb::GridBase& grid,
-                     const VolumeOptions& options);
+/// Notes these two of a grid, and of a segmentation that it was made in its own voxels.
+void noteVoxelSize(const std::string& path, const openvdb::GridBase& grid,
+                   const VolumeOptions& options);
 
 /// Notes along which axes a box ("crop", "domain") reaches beyond a scan, and what that means. A
 /// side that is farther away than scans are long is one that nobody gave.
