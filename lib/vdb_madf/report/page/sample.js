@@ -164,15 +164,16 @@ export class Sample {
   }
 
   /// The numbers of the grains and bonds whose flags are set, lengths in the unit that is shown.
-  /// `passingBonds`: those that count for a grain, whether the other one is visible or not.
-  summary(visible, visibleBonds, passingBonds = visibleBonds) {
+  /// A bond to a grain that is not visible counts for the visible one alone.
+  summary(visible, passingBonds) {
     const { grains, bonds, numbers, factor, about } = this;
+    const { first, second } = this.bondEnds;
+    const visibleEnds = passingBonds.map((passes, bond) => passes * (visible[first[bond]] + visible[second[bond]]));
+    const visibleBonds = visibleEnds.map((ends) => ends === 2);
     const isAll = this.isOwn && !visible.includes(0) && !visibleBonds.includes(0);
     const sum = (values, flags) => values.reduce((total, value, row) => total + (flags[row] ? value : 0), 0);
     const volume = grains.column('volume'), shownVolume = sum(volume, visible);
     const count = sum(visible, visible), bondCount = sum(visibleBonds, visibleBonds);
-    const { first, second } = this.bondEnds;
-    const bondEndsShown = passingBonds.reduce((total, passes, bond) => total + passes * (visible[first[bond]] + visible[second[bond]]), 0);
     const share = visible.includes(0) ? shownVolume / sum(volume, volume) : 1;
     const surface = (numbers[`specific_surface_per_${about.unit}`] ?? NaN) / factor;
     const median = (by) => (isAll ? factor * (numbers[`grain_diameter_by_${by}_${about.unit}`].d50 ?? NaN)
@@ -180,7 +181,7 @@ export class Sample {
     const shownSurface = this.isOwn && !visible.includes(0) ? surface
       : sum(grains.column('free_area'), visible) / shownVolume;
     return { grains: count, bonds: bondCount, solidFraction: share * numbers.solid_fraction,
-      coordination: isAll ? numbers.mean_coordination : bondEndsShown / count,
+      coordination: isAll ? numbers.mean_coordination : sum(visibleEnds, passingBonds) / count,
       diameterByVolume: median('volume'), diameterByNumber: median('number'), surface: shownSurface,
       ratio: isAll ? numbers.bond_to_grain_ratio : sum(bonds.column('radius_ratio'), visibleBonds) / bondCount,
       surfaceOfMass: numbers.specific_surface_m2_per_kg * shownSurface / surface,

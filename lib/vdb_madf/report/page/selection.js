@@ -47,7 +47,7 @@ export class Selection {
     const { sample } = this;
     this.visible = new Uint8Array(sample.count).fill(1);
     this.visibleBonds = new Uint8Array(sample.bonds.rows).fill(1);
-    this.passingBonds = new Uint8Array(sample.bonds.rows).fill(1);  // also of grains that do not pass
+    this.passingBonds = new Uint8Array(sample.bonds.rows).fill(1);  // their grains may not
     this.states = new Uint8Array(sample.count).fill(kPlain);
   }
 

@@ -25,8 +25,8 @@ export function originOf(sample) {
 
 /// Titles and values of the numbers of a sample, or of its grains and bonds whose flags are set.
 export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
-  visibleBonds = new Uint8Array(sample.bonds.rows).fill(1), passingBonds = visibleBonds) {
-  const numbers = sample.summary(visible, visibleBonds, passingBonds);
+  passingBonds = new Uint8Array(sample.bonds.rows).fill(1)) {
+  const numbers = sample.summary(visible, passingBonds);
   const result = [
     ['Grains', counted(numbers.grains)],
     ['Bonds', counted(numbers.bonds)],
@@ -50,7 +50,7 @@ export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
 
 function drawTiles(sample, selection) {
   const all = selection.filterCount > 0 ? tiles(sample) : [];
-  element('numbers').replaceChildren(...tiles(sample, selection.visible, selection.visibleBonds, selection.passingBonds).map(([title, value], i) => {
+  element('numbers').replaceChildren(...tiles(sample, selection.visible, selection.passingBonds).map(([title, value], i) => {
     const whole = make('small', {}, all.length > 0 ? `of all ${all[i][1]}` : '');
     return make('div', { className: 'tile' }, make('b', {}, value, whole), make('span', {}, title));
   }));
