@@ -17,11 +17,13 @@ void parsePair(InputOptions& first, InputOptions& second, const std::vector<std:
   second.bigEndian = first.bigEndian;
   second.bytesToSkip = first.bytesToSkip;
   second.size = first.size;
-  second.dataset = first.dataset;
-  // It is for those that have datasets; if none has, reading says so.
-  if (hasDatasets(first.path) || hasDatasets(second.path))
-    for (InputOptions* input : {&first, &second})
-      if (!hasDatasets(input->path)) input->dataset.clear();
+  if (!first.dataset.empty()) {
+    // It is for those that have datasets; if none has, reading says so.
+    const bool hasFirst = hasDatasets(first.path), hasSecond = hasDatasets(second.path);
+    second.dataset = first.dataset;
+    if (hasFirst && !hasSecond) second.dataset.clear();
+    if (hasSecond && !hasFirst) first.dataset.clear();
+  }
   for (InputOptions* input : {&first, &second})
     if (!hasRawEnding(input->path) && !isStandardInput(input->path)) input->size.reset();
 }
